@@ -4,7 +4,8 @@
 // numbers are finite, and lo <= hi on each axis (is_valid()).
 #pragma once
 
-#include <algorithm>
+#include "runtime/core/algorithm.hpp"
+
 #include <array>
 #include <cmath>
 #include <limits>

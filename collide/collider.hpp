@@ -34,8 +34,8 @@
 #pragma once
 
 #include "collide/parallel/manager.hpp"
-#include "collide/parallel/report.hpp"
 #include "collide/parallel/voxel.hpp"
+#include "collide/report.hpp"
 #include "runtime/runtime.hpp"
 
 #include <vector>

@@ -24,8 +24,8 @@
 #pragma once
 
 #include "collide/capsule.hpp"
+#include "runtime/core/algorithm.hpp"
 
-#include <algorithm>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>

@@ -1,5 +1,6 @@
 #include "m2m/coupling_weights.hpp"
 
+#include "m2m/parallel/row_book.hpp"
 #include "runtime/core/error.hpp"
 
 #include <algorithm>
@@ -50,6 +51,26 @@ WeightMatrix matrix_of(const GlobalRows& rows, std::int64_t n_sources, std::int6
   }
   for (; next < n_targets; ++next) matrix.rows.end_row();
   return matrix;
+}
+
+Task collect_weights(AnyCoupling coupling, std::int64_t n_sources, std::int64_t n_targets,
+                     WeightMatrix* out) {
+  const CouplingSetup setup = coupling.setup();
+  TESS_CHECK(
+      setup.id != CouplingId{},
+      "weights of a coupling are collected before its first search: co_await search() first");
+  require_weights(setup.kind, setup.clamp);
+  TESS_CHECK(setup.source_values == Centring::nodes,
+             "weights are of values at points, and the coupling's source values are in ",
+             rows_of(setup.source_values));
+  GroupProxy<RowBook> book;
+  co_await epoch([&] { book = create_group<RowBook>(); });
+  co_await epoch([&] { setup.source.broadcast<&AnyPiece::m2m_give_rows>(setup.id, book); });
+  Future<GlobalRows> page;
+  book.broadcast<&RowBook::close_page>(page.callback());
+  const GlobalRows rows = co_await page;
+  co_await epoch([&] { book.destroy(); });
+  *out = matrix_of(rows, n_sources, n_targets);
 }
 
 }  // namespace tess::m2m

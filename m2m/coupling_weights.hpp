@@ -8,13 +8,14 @@
 #pragma once
 
 #include "m2m/coupling.hpp"
-#include "m2m/parallel/row_book.hpp"
 #include "m2m/transfer.hpp"
 #include "m2m/weights_file.hpp"
 
 #include <cstdint>
 
 namespace tess::m2m {
+
+struct GlobalRows;
 
 /// The matrix of rows over global ids. Throws Error (bad_value) if an id is not in range or a target
 /// occurs twice.
@@ -29,29 +30,8 @@ void require_weights(TransferKind kind, bool clamp);
 /// bits of the coupling; for second_order the same up to rounding; `limited` has no weights and is
 /// refused. Targets outside the source have no weights, except those with the nearest vertex
 /// (Nearest): one weight of 1.
-template <class S, class T>
-Task collect_weights(Coupling<S, T> coupling, std::int64_t n_sources, std::int64_t n_targets,
-                     WeightMatrix* out) {
-  const CouplingSetup setup = coupling.setup();
-  TESS_CHECK(
-      setup.id != CouplingId{},
-      "weights of a coupling are collected before its first search: co_await search() first");
-  require_weights(setup.kind, setup.clamp);
-  TESS_CHECK(setup.source_values == Centring::nodes,
-             "weights are of values at points, and the coupling's source values are in ",
-             rows_of(setup.source_values));
-  GroupProxy<RowBook> book;
-  co_await epoch([&] { book = create_group<RowBook>(); });
-  co_await epoch([&] {
-    ArrayProxy<S>(setup.source)
-        .template broadcast<&Piece<S>::template m2m_give_rows<T>>(setup.id, book);
-  });
-  Future<GlobalRows> page;
-  book.broadcast<&RowBook::close_page>(page.callback());
-  const GlobalRows rows = co_await page;
-  co_await epoch([&] { book.destroy(); });
-  *out = matrix_of(rows, n_sources, n_targets);
-}
+Task collect_weights(AnyCoupling coupling, std::int64_t n_sources, std::int64_t n_targets,
+                     WeightMatrix* out);
 
 /// The same for a transfer between meshes that the library holds.
 inline Task collect_weights(const Transfer& transfer, std::int64_t n_sources,

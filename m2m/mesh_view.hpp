@@ -3,8 +3,8 @@
 #pragma once
 
 #include "m2m/mesh.hpp"
+#include "runtime/core/algorithm.hpp"
 
-#include <algorithm>
 #include <cstdint>
 #include <span>
 

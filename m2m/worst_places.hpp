@@ -4,8 +4,8 @@
 
 #include "m2m/mesh.hpp"
 #include "m2m/status.hpp"
+#include "runtime/core/algorithm.hpp"
 
-#include <algorithm>
 #include <cstddef>
 #include <span>
 #include <vector>

@@ -12,7 +12,8 @@
 // later rounds may arrive earlier.
 #pragma once
 
-#include <algorithm>
+#include "runtime/core/algorithm.hpp"
+
 #include <cstddef>
 #include <cstdint>
 #include <span>

@@ -3,7 +3,7 @@
 
 #include "collide/hit.hpp"
 #include "collide/parallel/object_list.hpp"
-#include "collide/parallel/report.hpp"
+#include "collide/report.hpp"
 #include "runtime/core/hash.hpp"
 #include "runtime/core/uninitialised.hpp"
 

@@ -20,9 +20,9 @@
 #include "collide/parallel/shipment.hpp"
 #include "collide/parallel/voxel.hpp"
 #include "collide/parallel/voxel_sort.hpp"
+#include "runtime/core/algorithm.hpp"
 #include "runtime/runtime.hpp"
 
-#include <algorithm>
 #include <cstdint>
 #include <deque>
 #include <map>

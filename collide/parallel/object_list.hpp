@@ -6,10 +6,10 @@
 #include "collide/hit.hpp"
 #include "collide/search/entry.hpp"
 #include "collide/search/scratch.hpp"
+#include "runtime/core/algorithm.hpp"
 #include "runtime/core/ids.hpp"
 #include "runtime/core/serialize.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <memory>

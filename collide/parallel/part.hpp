@@ -5,8 +5,8 @@
 
 #include "collide/parallel/object_list.hpp"
 #include "collide/parallel/plan.hpp"
-#include "collide/parallel/report.hpp"
 #include "collide/parallel/voxel_sort.hpp"
+#include "collide/report.hpp"
 #include "collide/search/entry.hpp"
 
 #include <memory>

@@ -11,8 +11,8 @@
 #pragma once
 
 #include "collide/box.hpp"
+#include "runtime/core/algorithm.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #ifdef __AVX512VL__

@@ -10,8 +10,8 @@
 #include "collide/search/pair_buffer.hpp"
 #include "collide/search/scratch.hpp"
 #include "collide/search/wide.hpp"
+#include "runtime/core/algorithm.hpp"
 
-#include <algorithm>
 #include <limits>
 
 namespace tess::collide::search {

@@ -3,7 +3,8 @@
 // of ten thousand.
 #pragma once
 
-#include <algorithm>
+#include "runtime/core/algorithm.hpp"
+
 #include <cstddef>
 #include <cstdlib>
 #include <cstring>

@@ -7,8 +7,8 @@
 
 #include "collide/hit.hpp"
 #include "collide/serial/voxel_grid.hpp"
+#include "runtime/core/algorithm.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <limits>

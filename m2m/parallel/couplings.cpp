@@ -1,8 +1,21 @@
 #include "m2m/parallel/couplings.hpp"
 
+#include "m2m/parallel/coupling_sides.hpp"
 #include "runtime/core/check.hpp"
 
 namespace tess::m2m {
+
+Couplings::Couplings() : sides_(std::make_unique<CouplingSides>()) {}
+Couplings::Couplings(Couplings&&) noexcept = default;
+Couplings& Couplings::operator=(Couplings&&) noexcept = default;
+Couplings::~Couplings() = default;
+
+template <class Ar>
+void Couplings::serialize(Ar& ar) {
+  ar(*sides_);
+}
+template void Couplings::serialize(Reader&);
+template void Couplings::serialize(Writer&);
 
 namespace {
 
@@ -14,46 +27,22 @@ auto& side_of(Sides& sides, CouplingId id, const char* side) {
   return at->second;
 }
 
-/// Of an array or group of any class.
-bool has_ended(CollectionId id) {
-  return ArrayProxy<Ledger>(id).ended();
-}
-
 }  // namespace
 
-void detail::require_usable(const CouplingSetup& setup, CollectionId source, CollectionId target,
-                            const char* use) {
-  TESS_CHECK(source != CollectionId{} && target != CollectionId{}, "a coupling without arrays is ",
-             use, ": give its constructor the arrays that create() returned");
-  TESS_CHECK(
-      !has_ended(source) && !has_ended(target), "a coupling is ", use,
-      " after an array of its pieces was destroyed: make a new Coupling of arrays that exist");
-  TESS_CHECK(
-      setup.id == CouplingId{} || !has_ended(setup.ledger.id()), "a coupling is ", use,
-      " that another copy of the handle has destroyed: use the copy that called destroy(), or "
-      "make a new Coupling");
-}
-
-SourceSide& Couplings::source(CouplingId id) {
+SourceSide& CouplingSides::source(CouplingId id) {
   return side_of(sources, id, "source");
 }
-TargetSide& Couplings::target(CouplingId id) {
+TargetSide& CouplingSides::target(CouplingId id) {
   return side_of(targets, id, "target");
 }
-const TargetSide& Couplings::target(CouplingId id) const {
-  return side_of(targets, id, "target");
-}
-OverlapSource& Couplings::overlap_source(CouplingId id) {
+OverlapSource& CouplingSides::overlap_source(CouplingId id) {
   return side_of(overlap_sources, id, "source");
 }
-OverlapTarget& Couplings::overlap_target(CouplingId id) {
-  return side_of(overlap_targets, id, "target");
-}
-const OverlapTarget& Couplings::overlap_target(CouplingId id) const {
+OverlapTarget& CouplingSides::overlap_target(CouplingId id) {
   return side_of(overlap_targets, id, "target");
 }
 
-void Couplings::release(CouplingId id) {
+void CouplingSides::release(CouplingId id) {
   sources.erase(id);
   targets.erase(id);
   overlap_sources.erase(id);

@@ -5,6 +5,7 @@
 #include "collide/collider.hpp"
 #include "m2m/interpolate/donor.hpp"
 #include "m2m/parallel/ledger.hpp"
+#include "m2m/parallel/piece_array.hpp"
 #include "m2m/parallel/point_directory.hpp"
 #include "m2m/policy.hpp"
 #include "m2m/transfer_kind.hpp"
@@ -15,15 +16,16 @@
 
 namespace tess::m2m {
 
-/// A coupling; unique within the run.
-enum class CouplingId : std::uint64_t {};
+/// The two sides of a collision, as models.
+inline constexpr collide::ModelId source_model{1};
+inline constexpr collide::ModelId target_model{2};
 
 /// What all pieces know of a coupling.
 struct CouplingSetup {
   CouplingId id{};
   collide::Collider collider;
   GroupProxy<Ledger> ledger;
-  CollectionId source{}, target{};
+  PieceArray source, target;
   OutsidePolicy policy{};
   TransferKind kind{};
   double tolerance = 0;
@@ -79,7 +81,7 @@ struct Choice {
 struct GivenValues {
   CouplingId coupling{};
   collide::OwnerId from{};
-  std::uint64_t channel = 0;   ///< one per function that takes the values
+  detail::Taker take;          ///< a member of the target's class; each is a channel
   std::uint32_t round = 0;     ///< counts the applications of the channel
   std::vector<double> values;  ///< n_rows × n_components, row-major
 };

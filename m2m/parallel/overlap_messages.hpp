@@ -50,7 +50,7 @@ struct PartialRows {
 struct GhostValues {
   CouplingId coupling{};
   collide::OwnerId from{};
-  std::uint64_t channel = 0;
+  detail::Taker take;
   std::uint32_t step = 0;      ///< counts all steps of the channel
   std::vector<double> values;  ///< rows in the order of ids
 };

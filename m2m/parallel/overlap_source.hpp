@@ -22,14 +22,14 @@ class OverlapSource {
   /// Calls send(target piece, loads) for every target piece that overlaps this one. `values`: a row
   /// per point, tetrahedron or corner, as the coupling's source_values say.
   template <class Send>
-  void give(const MeshView& mesh, std::span<const double> values, std::uint64_t channel,
+  void give(const MeshView& mesh, std::span<const double> values, detail::Taker take,
             const Send& send) {
     rows_of_search_.check(n_unknowns(mesh, setup.source_values));
     cover_ = {};
     const std::size_t n_components = components_of(mesh, values);
-    const std::uint32_t round = rounds_[channel]++;
+    const std::uint32_t round = rounds_[take->channel]++;
     for (const auto& [target, given] : given_)
-      send(target, GivenValues{setup.id, {}, channel, round, loads(given, values, n_components)});
+      send(target, GivenValues{setup.id, {}, take, round, loads(given, values, n_components)});
   }
 
   template <class Ar>

@@ -190,13 +190,13 @@ std::vector<collide::OwnerId> OverlapTarget::finish_search(const MeshView& mesh)
 }
 
 void OverlapTarget::add(GivenValues loads) {
-  Channel& channel = channels_[loads.channel];
+  Channel& channel = channels_[loads.take->channel];
   const std::uint32_t round = loads.round;
   channel.loads.add(round, std::move(loads));
 }
 void OverlapTarget::add(GhostValues ghosts) {
   if (n_sources() == 0) return;
-  Channel& channel = channels_[ghosts.channel];
+  Channel& channel = channels_[ghosts.take->channel];
   const std::uint32_t step = ghosts.step;
   channel.ghosts.add(step, std::move(ghosts));
 }

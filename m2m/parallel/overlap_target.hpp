@@ -49,7 +49,7 @@ class OverlapTarget {
   /// Goes on with a channel as far as its messages allow. Sends values to holders of ghosts by
   /// send(piece, GhostValues). True if a round has ended: then values() are its result.
   template <class Send>
-  [[nodiscard]] bool advance(std::uint64_t channel_id, const Send& send);
+  [[nodiscard]] bool advance(detail::Taker take, const Send& send);
   /// Writes the result of a round: a row per status, where there is a value.
   void write(std::uint64_t channel, std::span<double> to) const;
 
@@ -115,8 +115,8 @@ class OverlapTarget {
 };
 
 template <class Send>
-bool OverlapTarget::advance(std::uint64_t channel_id, const Send& send) {
-  Channel& channel = channels_[channel_id];
+bool OverlapTarget::advance(detail::Taker take, const Send& send) {
+  Channel& channel = channels_[take->channel];
   for (;;) {
     if (channel.waits) {
       if (!channel.ghosts.has_next(n_ghost_messages())) return false;
@@ -136,7 +136,7 @@ bool OverlapTarget::advance(std::uint64_t channel_id, const Send& send) {
     const std::span<const double> shared = channel.projection->shared();
     for (const auto& [piece, neighbour] : neighbours_) {
       if (!neighbour.takes_part || neighbour.owned.empty()) continue;
-      GhostValues message{setup.id, {}, channel_id, channel.n_steps, {}};
+      GhostValues message{setup.id, {}, take, channel.n_steps, {}};
       for (const auto& [id, point] : neighbour.owned) {
         const auto row = shared.subspan(static_cast<std::size_t>(point) * n, n);
         message.values.insert(message.values.end(), row.begin(), row.end());

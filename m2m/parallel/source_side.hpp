@@ -39,7 +39,7 @@ class SourceSide {
   /// `values`: of all points of the piece, n_points × n_components, row-major; or a row per
   /// tetrahedron or corner, as the coupling's source_values say.
   template <class Send>
-  void give(const MeshView& mesh, std::span<const double> values, std::uint64_t channel,
+  void give(const MeshView& mesh, std::span<const double> values, detail::Taker take,
             const Send& send) {
     const std::size_t n_rows = n_unknowns(mesh, setup.source_values);
     rows_of_search_.check(n_rows);
@@ -47,13 +47,11 @@ class SourceSide {
     prepare(mesh);
     const std::size_t n_components = values.size() / n_rows;
     const std::vector<Point> slopes = gradients(values, n_components);
-    const std::uint32_t round = rounds_[channel]++;
+    const std::uint32_t round = rounds_[take->channel]++;
     for (const auto& [target, donors] : donors_)
-      send(target, GivenValues{setup.id,
-                               {},
-                               channel,
-                               round,
-                               interpolate(mesh, donors, values, slopes, n_components)});
+      send(target,
+           GivenValues{
+               setup.id, {}, take, round, interpolate(mesh, donors, values, slopes, n_components)});
   }
 
   /// Calls send(target piece, rows) for every target piece that gets values from this one. The rows

@@ -185,7 +185,7 @@ TargetSide::Addressed<Choice> TargetSide::choices(const MeshView& mesh) {
 }
 
 void TargetSide::add(GivenValues rows) {
-  Rounds<GivenValues>& channel = channels_[rows.channel];
+  Rounds<GivenValues>& channel = channels_[rows.take->channel];
   const std::uint32_t round = rows.round;
   channel.add(round, std::move(rows));
 }

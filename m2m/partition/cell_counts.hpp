@@ -3,7 +3,8 @@
 // its root.
 #pragma once
 
-#include <algorithm>
+#include "runtime/core/algorithm.hpp"
+
 #include <cstddef>
 #include <cstdint>
 #include <iterator>

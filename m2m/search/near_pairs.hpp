@@ -5,8 +5,8 @@
 #include "m2m/mesh_view.hpp"
 #include "m2m/search/box_block.hpp"
 #include "m2m/search/point_grid.hpp"
+#include "runtime/core/algorithm.hpp"
 
-#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstdint>

@@ -6,8 +6,8 @@
 #pragma once
 
 #include "m2m/mesh.hpp"
+#include "runtime/core/algorithm.hpp"
 
-#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <span>

@@ -9,8 +9,8 @@
 #include "m2m/partition/id_set.hpp"
 #include "m2m/partition/split.hpp"
 #include "m2m/workers/worker.hpp"
+#include "runtime/core/algorithm.hpp"
 
-#include <algorithm>
 #include <array>
 #include <compare>
 #include <cstdint>

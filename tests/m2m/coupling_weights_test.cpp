@@ -1,6 +1,7 @@
 // The weights of couplings against the couplings themselves.
 #include "m2m/coupling_weights.hpp"
 
+#include "m2m/parallel/row_book.hpp"
 #include "m2m/read_mesh.hpp"
 #include "runtime/machine/simulated.hpp"
 #include "runtime/machine/threads.hpp"

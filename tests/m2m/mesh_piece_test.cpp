@@ -1,6 +1,7 @@
 // Chares that get their parts from the library, and whose values are member vectors.
 #include "m2m/mesh_piece.hpp"
 
+#include "collide/collider.hpp"
 #include "m2m/coupling.hpp"
 #include "m2m/kuhn.hpp"
 #include "runtime/testing.hpp"
@@ -57,7 +58,8 @@ struct Patch : Chare<Patch>, MeshPiece<Patch> {
   std::uint64_t n_loaded = 0;
 };
 
-/// A field goes there and back. What comes back goes over ghosts that took it on the way.
+/// A field goes there and back. What comes back goes over ghosts that took it on the way. The second
+/// search makes the voxels again.
 Task there_and_back(Counts& there_found, Counts& back_found) {
   ArrayProxy<Patch> large, small;
   co_await epoch([&] {
@@ -67,6 +69,9 @@ Task there_and_back(Counts& there_found, Counts& back_found) {
   Coupling there(large, small), back(small, large);
   co_await there.search();
   co_await back.search();
+  for (int call = 0; call < 2; ++call)  // the first one finds them used
+    co_await epoch([&] { collide::retire(there.collider()); });
+  co_await there.search();
   co_await epoch([&] {
     small.broadcast<&Patch::forget>();
     small.broadcast<&Patch::make_room>();

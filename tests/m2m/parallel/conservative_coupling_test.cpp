@@ -1,6 +1,7 @@
 // Conservative couplings between own chares, with values at nodes and in cells.
 #include "m2m/coupling.hpp"
 #include "m2m/kuhn.hpp"
+#include "m2m/parallel/point_directory.hpp"
 #include "m2m/partition/partition.hpp"
 #include "m2m/partition/split.hpp"
 #include "runtime/core/error.hpp"

@@ -1,4 +1,4 @@
-#include "collide/parallel/report.hpp"
+#include "collide/report.hpp"
 
 #include "runtime/core/error.hpp"
 

@@ -1,0 +1,39 @@
+// What a piece knows of its couplings: a side per coupling and role.
+#pragma once
+
+#include "m2m/parallel/couplings.hpp"
+#include "m2m/parallel/overlap_source.hpp"
+#include "m2m/parallel/overlap_target.hpp"
+#include "m2m/parallel/source_side.hpp"
+#include "m2m/parallel/target_side.hpp"
+
+#include <map>
+
+namespace tess::m2m {
+
+struct CouplingSides {
+  std::map<CouplingId, SourceSide> sources{};
+  std::map<CouplingId, TargetSide> targets{};
+  std::map<CouplingId, OverlapSource> overlap_sources{};
+  std::map<CouplingId, OverlapTarget> overlap_targets{};
+
+  [[nodiscard]] bool is_conservative_source(CouplingId id) const {
+    return overlap_sources.contains(id);
+  }
+  [[nodiscard]] bool is_conservative_target(CouplingId id) const {
+    return overlap_targets.contains(id);
+  }
+  // They end the job if this piece has no such side.
+  [[nodiscard]] SourceSide& source(CouplingId id);
+  [[nodiscard]] TargetSide& target(CouplingId id);
+  [[nodiscard]] OverlapSource& overlap_source(CouplingId id);
+  [[nodiscard]] OverlapTarget& overlap_target(CouplingId id);
+  void release(CouplingId id);
+
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(sources, targets, overlap_sources, overlap_targets);
+  }
+};
+
+}  // namespace tess::m2m
