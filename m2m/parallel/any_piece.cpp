@@ -8,102 +8,95 @@
 namespace tess::m2m {
 
 std::span<const Status> AnyPiece::status(CouplingId id) const {
-  return sides().is_conservative_target(id) ? sides().overlap_target(id).status()
-                                            : sides().target(id).status();
+  return m2m_sides().is_conservative_target(id) ? m2m_sides().overlap_target(id).status()
+                                                : m2m_sides().target(id).status();
 }
 std::span<const double> AnyPiece::distance(CouplingId id) const {
-  if (sides().is_conservative_target(id)) return {};
-  return sides().target(id).distance();
+  if (m2m_sides().is_conservative_target(id)) return {};
+  return m2m_sides().target(id).distance();
 }
 const OutsidePolicy& AnyPiece::policy(CouplingId id) const {
-  return sides().is_conservative_target(id) ? sides().overlap_target(id).setup.policy
-                                            : sides().target(id).setup.policy;
+  return m2m_sides().is_conservative_target(id) ? m2m_sides().overlap_target(id).setup.policy
+                                                : m2m_sides().target(id).setup.policy;
 }
 
 void AnyPiece::m2m_submit_source(const CouplingSetup& setup) {
-  SourceSide& from = sides().sources[setup.id];
+  SourceSide& from = m2m_sides().sources[setup.id];
   from.setup = setup;
   setup.collider.submit_early({m2m_owner(), source_model, from.start_search(m2m_view())});
   if (from.has_kept_cover()) setup.ledger.local().add(Tally{.n_kept_sources = 1});
 }
 void AnyPiece::m2m_submit_target(const CouplingSetup& setup) {
-  TargetSide& to = sides().targets[setup.id];
+  TargetSide& to = m2m_sides().targets[setup.id];
   to.setup = setup;
   setup.collider.submit_early({m2m_owner(), target_model, to.start_search(m2m_view())});
 }
 void AnyPiece::m2m_hits(CouplingId id, const collide::Hits& hits) {
-  if (sides().is_conservative_target(id))
-    sides().overlap_target(id).add(hits);
+  if (m2m_sides().is_conservative_target(id))
+    m2m_sides().overlap_target(id).add(hits);
   else
-    sides().target(id).add(hits);
+    m2m_sides().target(id).add(hits);
 }
 
 void AnyPiece::m2m_ask(CouplingId id) {
-  TargetSide& to = sides().target(id);
-  for (auto& [source, query] : to.donor_queries(m2m_view())) {
-    query.from = m2m_owner();
-    to.setup.source.send<&AnyPiece::m2m_answer>(source, std::move(query));
-  }
-  ask_on(to);
+  TargetSide& to = m2m_sides().target(id);
+  for (auto& [source, query] : to.donor_queries(m2m_view()))
+    m2m_send<&AnyPiece::m2m_answer>(to.setup.source, source, std::move(query));
+  m2m_ask_on(to);
 }
 void AnyPiece::m2m_answer(const DonorQuery& query) {
-  SourceSide& from = sides().source(query.coupling);
-  DonorAnswer answer = from.answer(m2m_view(), query);
-  answer.from = m2m_owner();
-  from.setup.target.send<&AnyPiece::m2m_receive_donors>(query.from, std::move(answer));
+  SourceSide& from = m2m_sides().source(query.coupling);
+  m2m_send<&AnyPiece::m2m_receive_donors>(from.setup.target, query.from,
+                                          from.answer(m2m_view(), query));
 }
 void AnyPiece::m2m_receive_donors(const DonorAnswer& answer) {
-  TargetSide& to = sides().target(answer.coupling);
+  TargetSide& to = m2m_sides().target(answer.coupling);
   to.add(answer);
-  ask_on(to);
+  m2m_ask_on(to);
 }
 void AnyPiece::m2m_name_source(CouplingId id) {
   const MeshView mesh = m2m_view();
-  sides().source(id).setup.ledger.local().add(SourcePiece{
+  m2m_sides().source(id).setup.ledger.local().add(SourcePiece{
       m2m_owner(), box_of_nearest(mesh), static_cast<std::uint8_t>(mesh.tets.empty() ? 0 : 1)});
 }
 void AnyPiece::m2m_ask_nearest(CouplingId id, const std::vector<SourcePiece>& sources) {
-  TargetSide& to = sides().target(id);
+  TargetSide& to = m2m_sides().target(id);
   if (!to.waits()) return;
   to.name_sources(m2m_view(), sources);
-  ask_on(to);
+  m2m_ask_on(to);
 }
 void AnyPiece::m2m_answer_nearest(NearestQuery query) {
-  SourceSide& from = sides().source(query.coupling);
+  SourceSide& from = m2m_sides().source(query.coupling);
   const collide::OwnerId target = query.from;
-  NearestAnswer answer = from.answer(m2m_view(), std::move(query));
-  answer.from = m2m_owner();
-  from.setup.target.send<&AnyPiece::m2m_receive_nearest>(target, std::move(answer));
+  m2m_send<&AnyPiece::m2m_receive_nearest>(from.setup.target, target,
+                                           from.answer(m2m_view(), std::move(query)));
 }
 void AnyPiece::m2m_receive_nearest(const NearestAnswer& answer) {
-  TargetSide& to = sides().target(answer.coupling);
+  TargetSide& to = m2m_sides().target(answer.coupling);
   to.add(answer);
-  ask_on(to);
+  m2m_ask_on(to);
 }
 void AnyPiece::m2m_choose(Choice choice) {
-  sides().source(choice.coupling).choose(std::move(choice));
+  m2m_sides().source(choice.coupling).choose(std::move(choice));
 }
 
-void AnyPiece::ask_on(TargetSide& to) {
+void AnyPiece::m2m_ask_on(TargetSide& to) {
   if (!to.has_all_answers()) return;
   if (to.needs_sources()) return to.setup.ledger.local().add_waiting();
   auto queries = to.nearest_queries(m2m_view());
-  for (auto& [source, query] : queries) {
-    query.from = m2m_owner();
-    to.setup.source.send<&AnyPiece::m2m_answer_nearest>(source, std::move(query));
-  }
+  for (auto& [source, query] : queries)
+    m2m_send<&AnyPiece::m2m_answer_nearest>(to.setup.source, source, std::move(query));
   if (!queries.empty()) return;
-  for (auto& [source, choice] : to.choices(m2m_view())) {
-    choice.from = m2m_owner();
-    to.setup.source.send<&AnyPiece::m2m_choose>(source, std::move(choice));
-  }
+  for (auto& [source, choice] : to.choices(m2m_view()))
+    m2m_send<&AnyPiece::m2m_choose>(to.setup.source, source, std::move(choice));
   to.setup.ledger.local().add(to.tally());
   to.setup.ledger.local().add(to.worst());
 }
 
 void AnyPiece::m2m_give_values(CouplingId id, detail::Giver give, detail::Taker take) {
-  if (sides().is_conservative_source(id)) return give_loads(id, give->show(*this, id), take);
-  SourceSide& from = sides().source(id);
+  if (m2m_sides().is_conservative_source(id))
+    return m2m_give_loads(id, give->show(*this, id), take);
+  SourceSide& from = m2m_sides().source(id);
   const std::span<const double> values = give->show(*this, id);
   const MeshView mesh = m2m_view();
   const std::size_t n_rows = n_unknowns(mesh, from.setup.source_values);
@@ -111,8 +104,7 @@ void AnyPiece::m2m_give_values(CouplingId id, detail::Giver give, detail::Taker 
              rows_of(from.setup.source_values), " gives ", values.size(),
              " values: give as many rows, ghosts included");
   from.give(mesh, values, take, [&](collide::OwnerId target, GivenValues given) {
-    given.from = m2m_owner();
-    from.setup.target.send<&AnyPiece::m2m_take>(target, std::move(given));
+    m2m_send<&AnyPiece::m2m_take>(from.setup.target, target, std::move(given));
   });
 }
 void AnyPiece::m2m_take_if_alone(CouplingId id, detail::Taker take) {
@@ -121,19 +113,19 @@ void AnyPiece::m2m_take_if_alone(CouplingId id, detail::Taker take) {
     fill_outside(to.setup.policy, to.status(), take->show(*this, id));
     m2m_received(id);
   };
-  if (sides().is_conservative_target(id))
-    fill(sides().overlap_target(id));
+  if (m2m_sides().is_conservative_target(id))
+    fill(m2m_sides().overlap_target(id));
   else
-    fill(sides().target(id));
+    fill(m2m_sides().target(id));
 }
 void AnyPiece::m2m_take(GivenValues given) {
   const CouplingId id = given.coupling;
   const detail::Taker take = given.take;
-  if (sides().is_conservative_target(id)) {
-    sides().overlap_target(id).add(std::move(given));
-    return project(id, take);
+  if (m2m_sides().is_conservative_target(id)) {
+    m2m_sides().overlap_target(id).add(std::move(given));
+    return m2m_project(id, take);
   }
-  TargetSide& to = sides().target(id);
+  TargetSide& to = m2m_sides().target(id);
   to.add(std::move(given));
   while (to.has_next(take->channel)) {
     to.take_next(take->channel, take->show(*this, id));
@@ -143,26 +135,26 @@ void AnyPiece::m2m_take(GivenValues given) {
 
 void AnyPiece::m2m_give_rows(CouplingId id, GroupProxy<RowBook> book) {
   const MeshView mesh = m2m_view();
-  SourceSide& from = sides().source(id);
+  SourceSide& from = m2m_sides().source(id);
   from.give_rows(mesh, [&](collide::OwnerId target, const Rows<double>& rows) {
-    GivenRows given{id, m2m_owner(), book, {}};
+    GivenRows given{id, {}, book, {}};
     for (std::size_t i = 0; i < rows.n_rows(); ++i)
       given.rows.sizes.push_back(rows.columns_of(i).size());
     for (const VertexId column : rows.columns)
       given.rows.columns.push_back(mesh.point_ids[static_cast<std::size_t>(column)]);
     given.rows.weights = rows.weights;
-    from.setup.target.send<&AnyPiece::m2m_take_rows>(target, std::move(given));
+    m2m_send<&AnyPiece::m2m_take_rows>(from.setup.target, target, std::move(given));
   });
 }
 void AnyPiece::m2m_take_rows(GivenRows given) {
   const MeshView mesh = m2m_view();
-  for (const std::int32_t row : sides().target(given.coupling).rows_from(given.from))
+  for (const std::int32_t row : m2m_sides().target(given.coupling).rows_from(given.from))
     given.rows.targets.push_back(mesh.point_ids[static_cast<std::size_t>(row)]);
   given.book.local().add(given.rows);
 }
 
 void AnyPiece::m2m_release(CouplingId id) {
-  sides().release(id);
+  m2m_sides().release(id);
 }
 
 }  // namespace tess::m2m

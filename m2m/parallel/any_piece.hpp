@@ -59,6 +59,7 @@ struct SharedPoints;
 struct PartialRows;
 struct GhostValues;
 class RowBook;
+class PieceArray;
 class TargetSide;
 
 class AnyPiece {
@@ -77,7 +78,7 @@ class AnyPiece {
   /// The policy of a coupling whose target this piece belongs to.
   [[nodiscard]] const OutsidePolicy& policy(CouplingId id) const;
 
-  // Entry methods of a search.
+  // Entry methods of a search. All names begin with m2m_, since the user's class inherits them.
   void m2m_submit_source(const CouplingSetup& setup);
   void m2m_submit_target(const CouplingSetup& setup);
   void m2m_hits(CouplingId id, const collide::Hits& hits);
@@ -126,12 +127,15 @@ class AnyPiece {
   /// New values were written.
   virtual void m2m_received(CouplingId id) = 0;
 
-  [[nodiscard]] CouplingSides& sides() const { return *couplings.sides_; }
+  [[nodiscard]] CouplingSides& m2m_sides() const { return *couplings.sides_; }
+  /// Sends a message that says from which piece it is.
+  template <auto F, class Message>
+  void m2m_send(const PieceArray& pieces, collide::OwnerId to, Message message);
   /// Goes on with a search once all answers are there.
-  void ask_on(TargetSide& to);
-  void give_loads(CouplingId id, std::span<const double> values, detail::Taker take);
+  void m2m_ask_on(TargetSide& to);
+  void m2m_give_loads(CouplingId id, std::span<const double> values, detail::Taker take);
   /// Goes on with a projection as far as its messages allow.
-  void project(CouplingId id, detail::Taker take);
+  void m2m_project(CouplingId id, detail::Taker take);
 };
 
 }  // namespace tess::m2m

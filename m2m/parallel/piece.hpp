@@ -49,13 +49,13 @@ class Piece : public AnyPiece {
   Piece() = default;
 
  private:
-  [[nodiscard]] const C& chare() const { return static_cast<const C&>(*this); }
+  [[nodiscard]] const C& m2m_chare() const { return static_cast<const C&>(*this); }
   [[nodiscard]] MeshView m2m_view() const final {
     static_assert(detail::check_piece<C>());
-    return chare().mesh_view();
+    return m2m_chare().mesh_view();
   }
   [[nodiscard]] collide::OwnerId m2m_owner() const final {
-    return collide::owner_of(chare().index());
+    return collide::owner_of(m2m_chare().index());
   }
   void m2m_received(CouplingId id) final {
     if constexpr (requires(C& of_user) { of_user.received(id); })

@@ -47,4 +47,10 @@ class PieceArray {
       array_;
 };
 
+template <auto F, class Message>
+void AnyPiece::m2m_send(const PieceArray& pieces, collide::OwnerId to, Message message) {
+  message.from = m2m_owner();
+  pieces.send<F>(to, std::move(message));
+}
+
 }  // namespace tess::m2m
