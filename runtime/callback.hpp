@@ -5,7 +5,7 @@
 
 #include "runtime/core/algorithm.hpp"
 #include "runtime/core/check.hpp"
-#include "runtime/core/registry.hpp"
+#include "runtime/core/registered_pointer.hpp"
 #include "runtime/core/serialize.hpp"
 
 #include <array>
@@ -106,23 +106,23 @@ class Callback {
 
   Callback() = default;
   /// For the proxies; the kind's function reads `where`.
-  Callback(const Kind& kind, const std::vector<std::byte>& where) : kind_(&kind), where_(where) {}
+  Callback(const Kind& kind, const std::vector<std::byte>& where) : kind_(kind), where_(where) {}
   template <Bitwise... Values>
   Callback(const Kind& kind, std::in_place_t tag, const Values&... where)
-      : kind_(&kind), where_(tag, where...) {}
+      : kind_(kind), where_(tag, where...) {}
 
-  [[nodiscard]] explicit operator bool() const { return kind_ != nullptr; }
+  [[nodiscard]] explicit operator bool() const { return !kind_.empty(); }
   [[nodiscard]] std::span<const std::byte> where() const { return where_.view(); }
 
   /// Calls the target with a value. Calling an empty Callback is misuse.
   void operator()(T value) const {
-    TESS_CHECK(kind_ != nullptr, "an empty Callback<", name_of_type<T>, "> is called");
+    TESS_CHECK(!kind_.empty(), "an empty Callback<", name_of_type<T>, "> is called");
     kind_->call(*this, std::move(value));
   }
 
   /// The target in words: "Node::result of [3]".
   [[nodiscard]] std::string name() const {
-    if (kind_ == nullptr) return "no target";
+    if (kind_.empty()) return "no target";
     return kind_->describe != nullptr ? kind_->describe(*this) : plain_name(kind_->name());
   }
 
@@ -130,17 +130,11 @@ class Callback {
 
   template <class Ar>
   void serialize(Ar& ar) {
-    if constexpr (Ar::is_reading) {
-      const auto id = ar.template take<std::uint32_t>();
-      kind_ = id == ~0U ? nullptr : &static_cast<const Kind&>(detail::Registry::at(id));
-    } else {
-      ar(kind_ == nullptr ? ~0U : kind_->id());
-    }
-    ar(where_);
+    ar(kind_, where_);
   }
 
  private:
-  const Kind* kind_ = nullptr;
+  detail::RegisteredPointer<Kind> kind_;
   detail::TargetName where_;
 };
 

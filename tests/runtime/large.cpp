@@ -95,7 +95,9 @@ class Station : public tess::Group<Station> {
     if (n_met_ == 20) faults_ = page_faults();
     if (n_met_ == 120) {
       const long n = page_faults() - faults_;
-      TESS_CHECK(n < 500, "100 transfers of 1 MiB took ", n, " new pages");
+      // 25 600 if each took new memory. One more vector may be alive than in the warm-up, where a
+      // process sends before it hears that its last message has left: 256 pages each.
+      TESS_CHECK(n < 2'000, "100 transfers of 1 MiB took ", n, " new pages");
       if (pe().value == 0) {
         done(1);
         return;
