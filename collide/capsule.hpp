@@ -6,6 +6,8 @@
 
 #include "collide/box.hpp"
 
+#include <limits>
+
 namespace tess::collide {
 
 struct Capsule {
@@ -15,6 +17,9 @@ struct Capsule {
 
   friend bool operator==(const Capsule&, const Capsule&) = default;
 };
+
+/// The capsule of an object of which no capsule is known.
+inline constexpr Capsule unknown_capsule{{}, {}, std::numeric_limits<double>::infinity()};
 
 /// A capsule that contains the convex hull of one or more points, whatever is rounded: around the segment
 /// between the two points that are farthest apart. The radius is at most sqrt(3) times the least for

@@ -11,6 +11,9 @@ namespace tess::collide {
 Collider make_collider(const ColliderOptions& options) {
   if (options.size != Point{0, 0, 0})
     static_cast<void>(VoxelGrid(options.origin, options.size));  // throws
+  if (!(options.piece_length >= 0))
+    fail(ErrorCode::bad_argument, "make_collider() with pieces of length ", options.piece_length,
+         ": give a positive length, infinity for whole objects, or 0 to have it chosen");
   const auto voxels = create<Voxel>(sparse);
   return {voxels, create_group<Manager>(voxels), options};
 }
@@ -54,7 +57,7 @@ Task run_collision(Collider collider, Report report, Callback<void> taken) {
   Plan plan;
   std::exception_ptr refused;
   try {
-    plan = make_plan(summary, n_pes(), o.origin, o.size, o.rules, step);
+    plan = make_plan(summary, n_pes(), o, step);
   } catch (...) {
     refused = std::current_exception();
   }

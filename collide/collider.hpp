@@ -27,6 +27,9 @@
 // clients submit for the next one only when the objects of the one before are taken on all PEs,
 // which it reports: a collision takes what it finds on each PE.
 //
+// Long thin objects may be submitted with capsules (capsule.hpp). If that pays, they are searched in
+// pieces, and pairs whose capsules are certainly apart are not reported: the receiver tests fewer.
+//
 // The voxels remain for the next collision; retire() ends those that are idle. They can be
 // balanced: call tess::start_balancing(collider.voxels, options) before the first collision, and
 // co_await balancer.round() between two collisions. Measured loads are stored by the index of the
@@ -38,17 +41,10 @@
 #include "collide/report.hpp"
 #include "runtime/runtime.hpp"
 
+#include <span>
 #include <vector>
 
 namespace tess::collide {
-
-/// The voxels, and the pairs that are hits.
-struct ColliderOptions {
-  Point origin{0, 0, 0};
-  /// Of the smallest voxels. Zero: chosen in each collision by expected cost, with an origin.
-  Point size{0, 0, 0};
-  PairRules rules{};
-};
 
 /// A handle to the voxels and Managers of a collider. It can be copied and sent.
 struct Collider {
@@ -59,7 +55,9 @@ struct Collider {
   /// Pass objects of a client on this PE to the local Manager, which copies them. They throw Error as
   /// it does.
   void submit(const Objects& objects) const { managers.local().submit(objects); }
-  void submit(const std::vector<Item>& items) const { managers.local().submit(items); }
+  void submit(const std::vector<Item>& items, std::span<const Capsule> capsules = {}) const {
+    managers.local().submit(items, capsules);
+  }
   /// The same within the epoch that creates the collider. If it is not known on this PE yet, the
   /// objects are a message that waits for it; then a box that is not valid ends the job.
   void submit_early(Submission objects) const;
@@ -71,7 +69,7 @@ struct Collider {
 };
 
 /// Creates the Managers and an empty array of voxels. Throws Error for a voxel size that is not
-/// positive, or zero on some axes only.
+/// positive, or zero on some axes only, and for a length of pieces that is negative or NaN.
 [[nodiscard]] Collider make_collider(const ColliderOptions& options);
 
 /// Collides all objects that were submitted. When the task is done, the owners have handled all

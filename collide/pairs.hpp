@@ -96,6 +96,9 @@ struct Capsules {
   [[nodiscard]] Capsule operator[](std::size_t i) const { return of(objects, i); }
 };
 
+/// Whether most of n objects are much longer than thick, as far as a few of them show.
+[[nodiscard]] bool seem_thin(const Capsules& capsules, std::size_t n);
+
 /// The same for objects that have capsules. A pair of long thin objects is passed on only if their
 /// capsules may have a common point, and never twice.
 template <class Real>
@@ -138,6 +141,21 @@ Capsules capsules_of(std::span<const Object> objects) {
             return capsule_of(static_cast<const Object*>(of)[i]);
           }};
 }
+
+}  // namespace detail
+
+/// What a client submits with the boxes of its objects (Objects in collider.hpp): the capsules, or none if
+/// the objects are so short or thick that they would not pay.
+template <detail::HasCapsule Object>
+[[nodiscard]] std::vector<Capsule> thin_capsules_of(std::span<const Object> objects) {
+  std::vector<Capsule> out;
+  if (!detail::seem_thin(detail::capsules_of(objects), objects.size())) return out;
+  out.reserve(objects.size());
+  for (const Object& object : objects) out.push_back(capsule_of(object));
+  return out;
+}
+
+namespace detail {
 
 /// A sink that calls found(i, j) per pair for which test(i, j) holds; i is of the first set.
 template <class Test, class Found>

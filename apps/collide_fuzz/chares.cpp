@@ -14,6 +14,7 @@ using namespace tess::collide;
 /// A scene, and the exact test of its objects.
 struct Objects {
   std::vector<Aabb> boxes;
+  std::vector<Capsule> capsules;  // or none
   std::vector<std::uint32_t> models;
   std::function<bool(std::uint32_t, std::uint32_t)> are_pair;
 };
@@ -36,12 +37,18 @@ class Client : public tess::Chare<Client, tess::Index1> {
     round_ = round;
     const Objects& scene = problem->rounds[static_cast<std::size_t>(round)];
     std::vector<Item> items;
-    for (std::size_t i = 0; i < scene.boxes.size(); ++i)
-      if (owner(i) == index().x)
-        items.push_back(
-            {scene.boxes[i],
-             {owner_of(index()), static_cast<LocalId>(i), static_cast<ModelId>(scene.models[i])}});
-    collider.submit(items);
+    std::vector<Capsule> capsules;
+    const bool with_capsules =
+        tess::unit(tess::mix(problem->look.seed + 7 * static_cast<std::uint64_t>(index().x))) <
+        problem->look.with_capsules;
+    for (std::size_t i = 0; i < scene.boxes.size(); ++i) {
+      if (owner(i) != index().x) continue;
+      items.push_back(
+          {scene.boxes[i],
+           {owner_of(index()), static_cast<LocalId>(i), static_cast<ModelId>(scene.models[i])}});
+      if (with_capsules && !scene.capsules.empty()) capsules.push_back(scene.capsules[i]);
+    }
+    collider.submit(items, capsules);
   }
   /// The exact test is the receiver's.
   void receive(const Hits& hits) {
@@ -71,7 +78,8 @@ tess::Task collide_rounds() {
   const double size = look.voxel_size;
   const ColliderOptions options{
       .size = {size, size, size},
-      .rules = {look.touching, look.within_model ? WithinModel::test : WithinModel::skip}};
+      .rules = {look.touching, look.within_model ? WithinModel::test : WithinModel::skip},
+      .piece_length = look.piece_length};
   Collider collider;
   tess::ArrayProxy<Client> clients;
   co_await tess::epoch([&] {
@@ -129,7 +137,11 @@ Objects objects_of(const Look& look) {
   with_objects(look, [&](auto objects, Drawer& drawer) {
     using Object = typename decltype(objects)::value_type;
     if constexpr (std::is_same_v<decltype(box_of(std::declval<const Object&>())), Aabb>) {
-      for (const Object& object : objects) out.boxes.push_back(box_of(object));
+      for (const Object& object : objects) {
+        out.boxes.push_back(box_of(object));
+        if constexpr (tess::collide::detail::HasCapsule<Object>)
+          out.capsules.push_back(capsule_of(object));
+      }
       out.models = drawer.models();
       const auto kept = std::make_shared<const std::vector<Object>>(std::move(objects));
       out.are_pair = [kept, test = pair_test(*kept, look.touching)](

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <fmt/format.h>
+#include <limits>
 
 namespace collide_fuzz {
 namespace {
@@ -46,17 +47,22 @@ Look look_of(std::uint64_t seed) {
                                      : tess::collide::Touching::does_not_count;
   const double size = one_of(random, std::array{0.0, 0.05, 0.1, 0.3, 0.125, 0.25, 1.0, 4.0});
   look.voxel_size = size * (random.chance(0.8) ? look.scale : 1);
+  look.with_capsules = one_of(random, std::array{0.0, 0.7, 1.0});
+  const double length = one_of(
+      random, std::array{0.0, 0.005, 0.02, 0.1, 0.5, std::numeric_limits<double>::infinity()});
+  look.piece_length = length * look.scale;
   return look;
 }
 
 std::string describe(const Look& look) {
   return fmt::format(
       "{} {} {}, offset {:g}, scale {:g}, largest {:g} over {:g} decades, {} models{}, {}, voxel "
-      "size {:g}",
+      "size {:g}, {:g} of the clients with capsules, pieces {:g}",
       look.n, shape_names[static_cast<std::size_t>(look.shape)],
       place_names[static_cast<std::size_t>(look.place)], look.offset, look.scale, look.largest,
       look.decades, look.n_models, look.within_model ? " and pairs within" : "",
-      look.touching == tess::collide::Touching::counts ? "closed" : "open", look.voxel_size);
+      look.touching == tess::collide::Touching::counts ? "closed" : "open", look.voxel_size,
+      look.with_capsules, look.piece_length);
 }
 
 }  // namespace collide_fuzz

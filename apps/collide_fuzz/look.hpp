@@ -54,6 +54,9 @@ struct Look {
   bool within_model = false;
   tess::collide::Touching touching{};
   double voxel_size = 0;  ///< 0: chosen
+  /// On chares: part of the clients submit the capsules of objects that have some.
+  double with_capsules = 0;
+  double piece_length = 0;
 };
 
 /// The Look of a seed.

@@ -41,6 +41,10 @@ void Manager::begin(std::uint64_t step, const Plan& plan, const Report& report) 
   r.delivery->plan = plan;
   r.delivery->report = report;
   r.delivery->managers = group();
+  if (plan.pieces.used) {
+    r.delivery->objects.divide(plan.pieces.frame, plan.pieces.longest, pe());
+    r.statistics.n_pieces = r.delivery->objects.size();
+  }
   r.delivery->sort.run(plan, r.delivery->objects);
   if (machine().n_processes() > 1)
     r.delivery->sort.note_places(

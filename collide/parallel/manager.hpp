@@ -27,6 +27,7 @@
 #include <deque>
 #include <map>
 #include <memory>
+#include <span>
 #include <vector>
 
 namespace tess::collide {
@@ -38,10 +39,15 @@ struct CollisionStatistics {
   std::uint64_t n_voxels = 0;    ///< that were searched
   std::uint64_t n_entries = 0;   ///< (object, voxel) pairs that were sent
   std::uint64_t n_left_out = 0;  ///< and that were not
+  std::uint64_t n_pieces = 0;    ///< of long thin objects; 0: objects are boxes, without capsules
 
   friend CollisionStatistics operator+(const CollisionStatistics& a, const CollisionStatistics& b) {
-    return {std::max(a.voxel_size, b.voxel_size), std::max(a.n_levels, b.n_levels),
-            a.n_voxels + b.n_voxels, a.n_entries + b.n_entries, a.n_left_out + b.n_left_out};
+    return {std::max(a.voxel_size, b.voxel_size),
+            std::max(a.n_levels, b.n_levels),
+            a.n_voxels + b.n_voxels,
+            a.n_entries + b.n_entries,
+            a.n_left_out + b.n_left_out,
+            a.n_pieces + b.n_pieces};
   }
 };
 
@@ -59,9 +65,11 @@ class Manager : public Group<Manager> {
   /// Accept objects of a client on this PE. They throw Error with the object if a box is not valid;
   /// then no object of the list is accepted.
   void submit(const Objects& objects) { pending().append(objects, pe()); }
-  void submit(const std::vector<Item>& items) { pending().append(items, pe()); }
+  void submit(const std::vector<Item>& items, std::span<const Capsule> capsules) {
+    pending().append(items, capsules, pe());
+  }
   /// Entry method: the same for objects that were submitted before the Manager was known.
-  void receive(const Submission& late) { submit({late.owner, late.model, late.boxes}); }
+  void receive(const Submission& late) { submit(Objects{late.owner, late.model, late.boxes}); }
 
   /// A number for a collision that starts on this PE, and calls end_step() at its end.
   [[nodiscard]] std::uint64_t new_step() {

@@ -1,10 +1,12 @@
 #include "collide/parallel/object_list.hpp"
 
 #include "collide/search/survey.hpp"
+#include "collide/search/thin_objects.hpp"
 #include "runtime/core/error.hpp"
 
 #include <algorithm>
 #include <cstring>
+#include <utility>
 
 namespace tess::collide {
 namespace {
@@ -27,11 +29,20 @@ void prefetch(std::span<const Aabb> boxes) {
 }  // namespace
 
 /// Entries have 28 bits for an object.
-void ObjectList::check_room(std::size_t n_more) const {
+void ObjectList::check_room(std::size_t n_more, std::size_t n_capsules) const {
   if (boxes_.size() + n_more > search::most_objects)
     fail(ErrorCode::bad_value, "collider: ", boxes_.size() + n_more,
          " objects were submitted on one PE; the limit is ", search::most_objects,
          ": spread them over more PEs");
+  if (n_capsules != 0 && n_capsules != n_more)
+    fail(ErrorCode::bad_value, "collider: ", n_capsules, " capsules were submitted with ", n_more,
+         " objects: give one per object, or none");
+}
+
+void ObjectList::add_capsules(std::span<const Capsule> capsules) {
+  if (capsules.empty() && capsules_.empty()) return;
+  capsules_.resize(boxes_.size() - capsules.size(), unknown_capsule);
+  capsules_.insert(capsules_.end(), capsules.begin(), capsules.end());
 }
 
 void ObjectList::set_sources() {
@@ -71,7 +82,7 @@ void ObjectList::add_source(const Source& source) {
 void ObjectList::append(const Objects& objects, PeId pe) {
   const std::size_t n = objects.boxes.size(), begin = boxes_.size();
   if (n == 0) return;
-  check_room(n);
+  check_room(n, objects.capsules.size());
   boxes_.reserve(begin + n);
   Aabb bounds = bounds_;
   std::array<std::uint8_t, search::n_octaves<double>> octaves = octaves_;
@@ -99,12 +110,13 @@ void ObjectList::append(const Objects& objects, PeId pe) {
   }
   boxes_.resize(begin + n);
   if (!local_.empty()) number_objects();
+  add_capsules(objects.capsules);
 }
 
-void ObjectList::append(std::span<const Item> items, PeId pe) {
+void ObjectList::append(std::span<const Item> items, std::span<const Capsule> capsules, PeId pe) {
   if (items.empty()) return;
   check_boxes(items);
-  check_room(items.size());
+  check_room(items.size(), capsules.size());
   number_objects();
   for (const Item& item : items) {
     boxes_.push_back(item.box);
@@ -113,6 +125,32 @@ void ObjectList::append(std::span<const Item> items, PeId pe) {
     source_of_.push_back(find_source({item.id.owner, item.id.model, pe, 0}));
     local_.push_back(static_cast<std::uint32_t>(item.id.local));
   }
+  add_capsules(capsules);
+}
+
+void ObjectList::divide(const search::Frame& frame, double longest, PeId pe) {
+  number_objects();
+  search::Scratch<Aabb> boxes;
+  std::vector<std::uint32_t> source_of, local;
+  const std::uint32_t n_objects = size();
+  for (std::uint32_t i = 0; i < n_objects; ++i) {
+    const Aabb& box = boxes_.data()[i];
+    const std::size_t begin = boxes.size();
+    int n = search::n_pieces(capsule(i), longest);
+    // Entries have 28 bits.
+    if (begin + static_cast<std::size_t>(n) + n_objects - i > search::most_objects) n = 1;
+    pieces_.add_object({box, capsule(i), static_cast<std::uint64_t>(pe.value) << 32 | i, n, 0},
+                       frame);
+    boxes.resize(begin + static_cast<std::size_t>(n));
+    const Aabb* const end = search::cut(box, capsule(i), n, boxes.data() + begin);
+    boxes.resize(static_cast<std::size_t>(end - boxes.data()));
+    for (std::uint32_t piece = 0; piece < boxes.size() - begin; ++piece) pieces_.add_piece(piece);
+    source_of.resize(boxes.size(), source_of_[i]);
+    local.resize(boxes.size(), local_[i]);
+  }
+  std::swap(boxes_, boxes);
+  std::swap(source_of_, source_of);
+  std::swap(local_, local);
 }
 
 /// A list keeps the numbers of the sources only from the second source on.
@@ -136,6 +174,7 @@ void ObjectList::append(const ObjectList& from, std::span<const search::Entry> e
     if (!source_of_.empty()) source_of_.push_back(at);
     boxes_.data()[to] = from.boxes_.data()[object];
     local_[to] = static_cast<std::uint32_t>(from.local(object, source));
+    if (!from.pieces_.empty()) pieces_.append(from.pieces_, object);
     copies.push_back(search::make_entry(to, search::below_of(entries[i])));
   }
 }
@@ -145,6 +184,8 @@ void ObjectList::clear() {
   sources_.clear();
   source_of_.clear();
   local_.clear();
+  capsules_.clear();
+  pieces_.clear();
   several_models_ = false;
   bounds_ = no_box<double, 3>();
   octaves_.fill(0);

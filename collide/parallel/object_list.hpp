@@ -1,9 +1,11 @@
 // Objects of several clients in one list: the boxes, and per object a number of four bytes for its
-// client and model, and one for its number there. Lists of a single client have neither. A list that
-// is cleared keeps its memory.
+// client and model, and one for its number there. Lists of a single client have neither. Long thin
+// objects may be in pieces, each with a box of its own. A list that is cleared keeps its memory.
 #pragma once
 
+#include "collide/capsule.hpp"
 #include "collide/hit.hpp"
+#include "collide/parallel/piece_table.hpp"
 #include "collide/search/entry.hpp"
 #include "collide/search/scratch.hpp"
 #include "runtime/core/algorithm.hpp"
@@ -19,25 +21,32 @@
 
 namespace tess::collide {
 
-/// Objects of one owner and model, numbered from `first` on. submit() copies the boxes: they must
-/// live until it returns.
+/// Objects of one owner and model, numbered from `first` on. submit() copies the boxes and capsules:
+/// they must live until it returns.
 struct Objects {
   OwnerId owner{};
   ModelId model{};
   std::span<const Aabb> boxes;
   LocalId first{};
+  /// Of long thin objects, one per box, or none. Pairs whose capsules are certainly apart are no hits.
+  std::span<const Capsule> capsules{};
 };
 
 class ObjectList {
  public:
   /// Objects that are submitted on a PE. Both throw Error (bad_value) with the object if a box is not
-  /// valid, or with the number of objects if it is above 2^28, and change nothing.
+  /// valid, or with the numbers if objects are more than 2^28, or capsules neither none nor one per
+  /// object; then they change nothing.
   void append(const Objects& objects, PeId pe);
-  void append(std::span<const Item> items, PeId pe);
+  void append(std::span<const Item> items, std::span<const Capsule> capsules, PeId pe);
   /// Objects of another list. Adds their entries in this list to `copies`. They are not counted in
   /// bounds() and has_octave().
   void append(const ObjectList& from, std::span<const search::Entry> entries,
               std::vector<search::Entry>& copies);
+  /// Divides the objects of this PE into pieces that are at most `longest` long on each axis, if no more
+  /// than 64 are needed for that: the list has a box for each piece then. All lists of a collision are
+  /// divided, or none.
+  void divide(const search::Frame& frame, double longest, PeId pe);
   /// Makes room for objects of other lists.
   void reserve(std::size_t n) {
     boxes_.reserve(n);
@@ -75,13 +84,19 @@ class ObjectList {
   [[nodiscard]] LocalId local(std::uint32_t object, std::uint32_t source) const noexcept {
     return static_cast<LocalId>(local_.empty() ? object + sources_[source].shift : local_[object]);
   }
+  [[nodiscard]] bool has_capsules() const noexcept { return !capsules_.empty(); }
+  [[nodiscard]] const Capsule& capsule(std::uint32_t object) const noexcept {
+    return capsules_.empty() ? unknown_capsule : capsules_[object];
+  }
+  /// Of which objects the boxes are pieces; empty in a list that is not divided.
+  [[nodiscard]] const PieceTable& pieces() const noexcept { return pieces_; }
   /// True if all objects have one model.
   [[nodiscard]] bool has_one_model() const noexcept { return !several_models_; }
 
   /// If `keeper` keeps this list, the boxes may be attached to a message.
   template <class Ar>
   void serialize(Ar& ar, const std::shared_ptr<const void>& keeper) {
-    ar(several_models_, sources_, source_of_, local_);
+    ar(several_models_, sources_, source_of_, local_, pieces_);
     if constexpr (Ar::is_reading) {
       ar.template numbers<Aabb>([this](std::size_t n) {
         boxes_.resize(n);
@@ -93,7 +108,9 @@ class ObjectList {
   }
 
  private:
-  void check_room(std::size_t n_more) const;
+  void check_room(std::size_t n_more, std::size_t n_capsules) const;
+  /// Of the objects that have none yet.
+  void add_capsules(std::span<const Capsule> capsules);
   /// Sets the numbers of the objects that have none.
   void number_objects();
   void set_sources();
@@ -104,6 +121,8 @@ class ObjectList {
   std::vector<Source> sources_;
   std::vector<std::uint32_t> source_of_;  // per object; empty: all 0
   std::vector<std::uint32_t> local_;      // per object; empty: by the shift of the source
+  std::vector<Capsule> capsules_;         // per object that was submitted; empty: none is known
+  PieceTable pieces_;
   bool several_models_ = false;
   Aabb bounds_ = no_box<double, 3>();
   std::array<std::uint8_t, 2048> octaves_{};

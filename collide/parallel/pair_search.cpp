@@ -1,8 +1,10 @@
 #include "collide/parallel/pair_search.hpp"
 
+#include "collide/parallel/piece_pairs.hpp"
 #include "collide/search/costs.hpp"
 #include "collide/search/voxel_search.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace tess::collide {
@@ -13,6 +15,7 @@ using Search = search::VoxelSearch<double, 3>;
 /// The scratch memory of a thread.
 struct Scratch {
   VoxelProblem problem;
+  PiecePairs of_pieces;
   Search search{{}, false, {nullptr, nullptr}};
 };
 Scratch& scratch() {
@@ -26,6 +29,7 @@ struct TooManyPairs {};
 /// Sorts pairs by the owners of their objects.
 struct Receiver {
   const Report& report;
+  const Touching touching;
   const ObjectList* of_a = nullptr;  // of the current search
   const ObjectList* of_b = nullptr;
   HitSorter hits{};
@@ -34,10 +38,21 @@ struct Receiver {
   static void call(void* context, const std::uint32_t* first, const std::uint32_t* second,
                    std::size_t n, bool swapped) {
     auto& self = *static_cast<Receiver*>(context);
-    self.n_pairs += n;
-    if (self.n_pairs > most_pairs) throw TooManyPairs{};
-    self.hits.add({swapped ? *self.of_b : *self.of_a, first},
-                  {swapped ? *self.of_a : *self.of_b, second}, n, self.report, my_pe());
+    const ObjectList &of_first = swapped ? *self.of_b : *self.of_a,
+                     &of_second = swapped ? *self.of_a : *self.of_b;
+    if (of_first.pieces().empty()) return self.add(of_first, first, of_second, second, n);
+    PiecePairs& pairs = scratch().of_pieces;
+    for (std::size_t begin = 0; begin < n; begin += PiecePairs::most) {
+      pairs.find(of_first, first + begin, of_second, second + begin,
+                 std::min(n - begin, PiecePairs::most), self.touching);
+      self.add(of_first, pairs.x(), of_second, pairs.y(), pairs.size());
+    }
+  }
+  void add(const ObjectList& of_first, const std::uint32_t* first, const ObjectList& of_second,
+           const std::uint32_t* second, std::size_t n) {
+    n_pairs += n;
+    if (n_pairs > most_pairs) throw TooManyPairs{};
+    hits.add({of_first, first}, {of_second, second}, n, report, my_pe());
   }
 };
 
@@ -53,10 +68,11 @@ void solve(const PairSets& sets, Receiver& receiver, Search& search) {
 
 /// Calls run(search) for a search that has the receiver; false if there were too many pairs.
 template <class Run>
-bool run_search(const PairRules& rules, Receiver& receiver, const Run& run) {
+bool run_search(const Plan& plan, Receiver& receiver, const Run& run) {
   Search& search = scratch().search;
   PairOptions options;
-  options.touching = rules.touching;
+  // Boxes of pieces touch where their objects may overlap.
+  options.touching = plan.pieces.used ? Touching::counts : plan.rules.touching;
   search.restart(options, false, {&receiver, &Receiver::call});
   try {
     run(search);
@@ -73,8 +89,8 @@ bool search_at_once(std::span<const Part> parts) {
   const Delivery& delivery = parts.front().delivery();
   const PairRules& rules = delivery.plan.rules;
   voxel.gather(parts, rules.within_model);
-  Receiver receiver{delivery.report};
-  const bool found = run_search(rules, receiver, [&](Search& search) {
+  Receiver receiver{delivery.report, rules.touching};
+  const bool found = run_search(delivery.plan, receiver, [&](Search& search) {
     voxel.for_each_search([&](const PairSets& sets) { solve(sets, receiver, search); });
   });
   if (found) receiver.hits.send(delivery.report.call);
@@ -91,8 +107,8 @@ HitSorter PortionSearch::next() {
   while (!remaining_.empty()) {
     const PairSets sets = remaining_.back();
     remaining_.pop_back();
-    Receiver receiver{delivery.report};
-    if (!run_search(delivery.plan.rules, receiver,
+    Receiver receiver{delivery.report, delivery.plan.rules.touching};
+    if (!run_search(delivery.plan, receiver,
                     [&](Search& search) { solve(sets, receiver, search); }))
       divide(sets);
     else if (!receiver.hits.empty())

@@ -1,11 +1,15 @@
 #include "collide/parallel/plan.hpp"
 
 #include "collide/search/choose_grid.hpp"
+#include "collide/search/choose_pieces.hpp"
 #include "collide/search/survey.hpp"
 #include "runtime/core/error.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <limits>
+#include <optional>
 
 namespace tess::collide {
 
@@ -17,16 +21,49 @@ std::size_t most_sampled(std::int32_t n_pes) {
   return n_pes <= 64 ? 4096 : 2048;
 }
 
+/// NaN counts as infinite.
+double maximum(double a, double b) {
+  return std::isnan(a) || std::isnan(b) ? std::numeric_limits<double>::infinity() : std::max(a, b);
+}
+
+/// The values of the PEs, in the order of the PEs.
+template <class Value>
+std::vector<Value> by_pe(const std::vector<Summary::Sampled>& sampled,
+                         const std::vector<Value>& values) {
+  struct Run {
+    std::int32_t pe;
+    std::uint32_t begin, end;
+  };
+  std::vector<Run> runs;
+  std::uint32_t at = 0;
+  for (const Summary::Sampled& of_pe : sampled) {
+    runs.push_back({of_pe.pe, at, at + of_pe.n});
+    at += of_pe.n;
+  }
+  std::sort(runs.begin(), runs.end(), [](const Run& a, const Run& b) { return a.pe < b.pe; });
+  std::vector<Value> ordered;
+  ordered.reserve(values.size());
+  for (const Run& run : runs)
+    ordered.insert(ordered.end(), values.begin() + run.begin, values.begin() + run.end);
+  return ordered;
+}
+
 }  // namespace
 
 Summary::Summary(const ObjectList& objects, std::int32_t pe, std::size_t n_sampled)
-    : n(objects.size()), bounds(objects.bounds()) {
+    : n(objects.size()), bounds(objects.bounds()), has_capsules(objects.has_capsules()) {
   for (std::size_t octave = 0; octave < search::n_octaves<double>; ++octave)
     if (objects.has_octave(octave)) octaves[octave / 64] |= std::uint64_t{1} << octave % 64;
   for (const ObjectList::Source& source : objects.sources()) add(source.model);
+  if (n != 0 && !has_capsules) largest_radius = unknown_capsule.radius;
+  for (std::uint32_t i = 0; has_capsules && i < objects.size(); ++i)
+    add(objects.boxes()[i], objects.capsule(i));
   const std::size_t n_taken = std::min<std::size_t>(n, n_sampled);
-  for (std::size_t i = 0; i < n_taken; ++i)
-    sample.push_back(objects.boxes()[search::scattered(i, n_taken, n)]);
+  for (std::size_t i = 0; i < n_taken; ++i) {
+    const std::size_t at = search::scattered(i, n_taken, n);
+    sample.push_back(objects.boxes()[at]);
+    if (has_capsules) capsules.push_back(objects.capsule(static_cast<std::uint32_t>(at)));
+  }
   if (n_taken != 0) sampled.push_back({pe, static_cast<std::uint32_t>(n_taken)});
 }
 
@@ -35,9 +72,27 @@ void Summary::add(ModelId model) {
     models.push_back(model);
 }
 
+void Summary::add(const Aabb& box, const Capsule& capsule) {
+  double length = 0;
+  for (std::size_t k = 0; k < 3; ++k)
+    length = maximum(length, std::abs(capsule.to[k] - capsule.from[k]));
+  // A box that is not divided remains as it is.
+  const bool is_close = search::longest_extent(box) <= 2 * (length + 2 * capsule.radius);
+  longest_capsule = maximum(longest_capsule, length);
+  largest_radius = maximum(largest_radius, is_close ? capsule.radius : unknown_capsule.radius);
+}
+
 Summary JoinSummaries::combine(Summary a, const Summary& b) const {
   a.n += b.n;
   a.bounds = merged(a.bounds, b.bounds);
+  a.has_capsules = a.has_capsules || b.has_capsules;
+  a.longest_capsule = maximum(a.longest_capsule, b.longest_capsule);
+  a.largest_radius = maximum(a.largest_radius, b.largest_radius);
+  if (a.has_capsules) {
+    a.capsules.resize(a.sample.size(), unknown_capsule);
+    a.capsules.insert(a.capsules.end(), b.capsules.begin(), b.capsules.end());
+    a.capsules.resize(a.sample.size() + b.sample.size(), unknown_capsule);
+  }
   a.sample.insert(a.sample.end(), b.sample.begin(), b.sample.end());
   a.sampled.insert(a.sampled.end(), b.sampled.begin(), b.sampled.end());
   for (std::size_t i = 0; i < a.octaves.size(); ++i) a.octaves[i] |= b.octaves[i];
@@ -46,22 +101,8 @@ Summary JoinSummaries::combine(Summary a, const Summary& b) const {
 }
 
 Summary JoinSummaries::finish(Summary all) const {
-  struct Run {
-    std::int32_t pe;
-    std::uint32_t begin, end;
-  };
-  std::vector<Run> runs;
-  std::uint32_t at = 0;
-  for (const Summary::Sampled& sampled : all.sampled) {
-    runs.push_back({sampled.pe, at, at + sampled.n});
-    at += sampled.n;
-  }
-  std::sort(runs.begin(), runs.end(), [](const Run& a, const Run& b) { return a.pe < b.pe; });
-  std::vector<Aabb> ordered;
-  ordered.reserve(all.sample.size());
-  for (const Run& run : runs)
-    ordered.insert(ordered.end(), all.sample.begin() + run.begin, all.sample.begin() + run.end);
-  all.sample = std::move(ordered);
+  all.sample = by_pe(all.sampled, all.sample);
+  if (all.has_capsules) all.capsules = by_pe(all.sampled, all.capsules);
   return all;
 }
 
@@ -111,6 +152,46 @@ double chosen_size(const Summary& summary, std::int32_t n_pes) {
   return size;
 }
 
+PlanOfPieces choose_pieces(const Summary& summary, const ColliderOptions& options) {
+  if (!summary.has_capsules) return {};
+  const search::Frame frame = search::frame_of(summary.bounds);
+  if (options.piece_length != 0) return {true, options.piece_length, frame};
+  if (options.size != Point{0, 0, 0}) return {true, search::ThinObjects<double>::whole, frame};
+  const detail::Capsules capsules{summary.capsules.data(), [](const void* of, std::size_t i) {
+                                    return static_cast<const Capsule*>(of)[i];
+                                  }};
+  const search::ObjectsWithCapsules<double> sample{summary.sample, capsules};
+  const std::optional<double> longest = search::choose_pieces(
+      search::ThinSets<double>(&sample, 1), {.touching = options.rules.touching},
+      static_cast<double>(summary.n) / static_cast<double>(summary.sample.size()));
+  return {longest.has_value(), longest.value_or(0), frame};
+}
+
+/// As if the pieces had been submitted. They may be of any size up to the largest, which this estimates.
+Summary divided(const Summary& summary, double longest) {
+  Summary out = summary;
+  out.sample.clear();
+  std::array<Aabb, search::most_pieces> pieces;
+  for (std::size_t i = 0; i < summary.sample.size(); ++i) {
+    const Capsule& capsule = summary.capsules[i];
+    const Aabb* const end =
+        search::cut(summary.sample[i], capsule, search::n_pieces(capsule, longest), pieces.data());
+    out.sample.insert(out.sample.end(), static_cast<const Aabb*>(pieces.data()), end);
+  }
+  if (!summary.sample.empty()) out.n = summary.n * out.sample.size() / summary.sample.size();
+  const double largest =
+      std::max(longest, summary.longest_capsule / search::most_pieces) + 2 * summary.largest_radius;
+  std::size_t octave = search::n_octaves<double>;
+  while (octave-- > 0)
+    if ((summary.octaves[octave / 64] >> octave % 64 & 1U) != 0) break;
+  if (largest < std::numeric_limits<double>::infinity())
+    octave = std::min<std::size_t>(octave, search::octave_of(largest));
+  for (std::size_t o = 0; o <= octave; ++o) out.octaves[o / 64] |= std::uint64_t{1} << o % 64;
+  for (std::size_t o = octave + 1; o < search::n_octaves<double>; ++o)
+    out.octaves[o / 64] &= ~(std::uint64_t{1} << o % 64);
+  return out;
+}
+
 }  // namespace
 
 std::size_t n_sampled_per_pe(const Point& size, std::int32_t n_pes) noexcept {
@@ -118,30 +199,34 @@ std::size_t n_sampled_per_pe(const Point& size, std::int32_t n_pes) noexcept {
   return std::max<std::size_t>(2, most_sampled(n_pes) / static_cast<std::size_t>(n_pes));
 }
 
-Plan make_plan(const Summary& summary, std::int32_t n_pes, const Point& origin, const Point& size,
-               PairRules rules, std::uint64_t step) {
-  Plan plan{step, origin, size, 0, true, rules};
-  if (summary.n < 2 || (rules.within_model == WithinModel::skip && summary.models.size() == 1))
+Plan make_plan(const Summary& summary, std::int32_t n_pes, const ColliderOptions& options,
+               std::uint64_t step) {
+  Plan plan{step, options.origin, options.size, 0, true, options.rules, {}};
+  if (summary.n < 2 ||
+      (options.rules.within_model == WithinModel::skip && summary.models.size() == 1))
     return plan;
   plan.nothing = false;
-  const bool is_chosen = size == Point{0, 0, 0};
+  plan.pieces = choose_pieces(summary, options);
+  const bool in_pieces = plan.pieces.used && std::isfinite(plan.pieces.longest);
+  const Summary boxes = in_pieces ? divided(summary, plan.pieces.longest) : summary;
+  const bool is_chosen = options.size == Point{0, 0, 0};
   double widest = 0;
   for (std::size_t k = 0; k < 3; ++k)
-    widest = std::max(widest, summary.bounds.hi[k] - summary.bounds.lo[k]);
+    widest = std::max(widest, boxes.bounds.hi[k] - boxes.bounds.lo[k]);
   if (is_chosen) {
-    plan.origin = summary.bounds.lo;
-    double edge = chosen_size(summary, n_pes);
+    plan.origin = boxes.bounds.lo;
+    double edge = chosen_size(boxes, n_pes);
     // Indices have 32 bits, with a margin for what rounding does.
     edge = std::clamp(std::max(edge, std::ldexp(widest, -30)), 1e-300, 1e300);
     plan.size = {edge, edge, edge};
   }
   for (std::uint32_t octave = 0; octave < 2048; ++octave) {
-    if ((summary.octaves[octave / 64] >> octave % 64 & 1U) == 0) continue;
+    if ((boxes.octaves[octave / 64] >> octave % 64 & 1U) == 0) continue;
     // From its least to its greatest size.
     const double least = octave == 0 ? 0 : search::size_of_octave<double>(octave);
     for (Level l = plan.level_of(least); l <= plan.level_of(2 * least); ++l) plan.levels |= 1U << l;
   }
-  static_cast<void>(plan.grid(0).cells_of(summary.bounds));  // throws
+  static_cast<void>(plan.grid(0).cells_of(boxes.bounds));  // throws
   return plan;
 }
 

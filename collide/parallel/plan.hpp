@@ -7,19 +7,36 @@
 
 #include "collide/hit.hpp"
 #include "collide/parallel/object_list.hpp"
+#include "collide/search/slim_capsule.hpp"
 #include "collide/serial/voxel_grid.hpp"
 
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <vector>
 
 namespace tess::collide {
 
+/// The voxels, and the pairs that are hits.
+struct ColliderOptions {
+  Point origin{0, 0, 0};
+  /// Of the smallest voxels. Zero: chosen in each collision by expected cost, with an origin.
+  Point size{0, 0, 0};
+  PairRules rules{};
+  /// Of objects with capsules. Infinite: they are whole. Zero: chosen in each collision by expected cost,
+  /// with the size of the voxels; whole if that is given.
+  double piece_length = 0;
+};
+
 /// What a PE knows of the objects that were submitted to it.
 struct Summary {
   std::uint64_t n = 0;
   Aabb bounds = no_box<double, 3>();
+  bool has_capsules = false;
+  /// Of all capsules; the radius is infinite if one is not known, or much smaller than its box.
+  double longest_capsule = 0, largest_radius = 0;
   std::vector<Aabb> sample;
+  std::vector<Capsule> capsules;  ///< of the sample, or none
   /// Whose boxes the sample has, one PE after the other.
   struct Sampled {
     std::int32_t pe = 0;
@@ -33,10 +50,12 @@ struct Summary {
   /// Of the objects on a PE, with so many of their boxes as a sample.
   Summary(const ObjectList& objects, std::int32_t pe, std::size_t n_sampled);
   void add(ModelId model);
+  void add(const Aabb& box, const Capsule& capsule);
 
   template <class Ar>
   void serialize(Ar& ar) {
-    ar(n, bounds, sample, sampled, octaves, models);
+    ar(n, bounds, has_capsules, longest_capsule, largest_radius, sample, capsules, sampled, octaves,
+       models);
   }
 };
 /// Joins in any order; in the end the sample is in the order of the PEs.
@@ -49,6 +68,13 @@ struct JoinSummaries {
 using Level = std::int32_t;
 inline constexpr Level most_levels = 32;
 
+/// How long thin objects are searched: with their capsules, in pieces of a length or whole.
+struct PlanOfPieces {
+  bool used = false;    ///< if not, objects are boxes
+  double longest = 0;   ///< on each axis; infinite: objects are whole
+  search::Frame frame;  ///< of the capsules in floats
+};
+
 struct Plan {
   std::uint64_t step = 0;  ///< of the collider; unique
   Point origin{};
@@ -56,20 +82,22 @@ struct Plan {
   std::uint32_t levels = 0;  ///< a bit per level that has objects
   bool nothing = true;       ///< no pair is possible
   PairRules rules;
+  PlanOfPieces pieces;
 
   [[nodiscard]] bool has(Level level) const noexcept { return (levels >> level & 1U) != 0; }
   [[nodiscard]] VoxelGrid grid(Level level) const;
   [[nodiscard]] Level level_of(double longest_extent) const noexcept;
+  [[nodiscard]] Level highest() const noexcept { return 31 - std::countl_zero(levels); }
 };
 
 /// How many boxes each of so many PEs gives to the sample from which a size of zero is chosen. Another
 /// size needs none. All PEs wait for the sample, so many PEs give few.
 [[nodiscard]] std::size_t n_sampled_per_pe(const Point& size, std::int32_t n_pes) noexcept;
 
-/// For so many PEs. With a size of zero, the size that is expected to cost least. A size that is too small costs time
+/// For so many PEs. With a size of zero, the size that is expected to cost least; so with the length of pieces. A size that is too small costs time
 /// but no memory: objects stand on the level of their size. Throws Error (out_of_range) if a
 /// coordinate has no 32-bit cell.
-[[nodiscard]] Plan make_plan(const Summary& summary, std::int32_t n_pes, const Point& origin,
-                             const Point& size, PairRules rules, std::uint64_t step);
+[[nodiscard]] Plan make_plan(const Summary& summary, std::int32_t n_pes,
+                             const ColliderOptions& options, std::uint64_t step);
 
 }  // namespace tess::collide

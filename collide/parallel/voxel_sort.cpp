@@ -67,7 +67,8 @@ void VoxelSort::sort_level(const Plan& plan, const ObjectList& objects, Level le
   const VoxelGrid grid = plan.grid(level);
   const bool one_level = plan.levels == 1U << level;
   const auto level_of = [&](std::uint32_t i) {
-    return plan.level_of(search::longest_extent(boxes[i]));
+    // A piece may be larger than was expected: it touches some voxels more then.
+    return std::min(plan.level_of(search::longest_extent(boxes[i])), plan.highest());
   };
   const auto is_native = [&](std::uint32_t i) { return one_level || level_of(i) == level; };
   const auto is_visitor = [&](std::uint32_t i) { return level_of(i) < level; };

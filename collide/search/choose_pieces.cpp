@@ -12,28 +12,14 @@
 namespace tess::collide::search {
 namespace {
 
-/// Whether most capsules are much longer than thick, as far as a few of them show.
-template <class Real>
-bool seem_thin(const ObjectsWithCapsules<Real>& set) {
-  const std::size_t n = std::min<std::size_t>(set.boxes.size(), 64);
-  std::size_t n_thin = 0;
-  for (std::size_t i = 0; i < n; ++i) {
-    const Capsule capsule = set.capsules[scattered(i, n, set.boxes.size())];
-    double length = 0;
-    for (std::size_t k = 0; k < 3; ++k)
-      length = std::max(length, std::abs(capsule.to[k] - capsule.from[k]));
-    if (16 * capsule.radius < length) ++n_thin;
-  }
-  return 2 * n_thin > n;
-}
-
 /// About 2 sqrt(n) of n objects: among them are four times as many pairs as each object has in the
 /// whole set.
 template <class Real>
 struct Sample {
-  explicit Sample(const ObjectsWithCapsules<Real>& set) {
+  Sample(const ObjectsWithCapsules<Real>& set, double scale) {
     const std::size_t n = set.boxes.size();
-    const auto wanted = static_cast<std::size_t>(std::ceil(2 * std::sqrt(static_cast<double>(n))));
+    const double n_meant = scale * static_cast<double>(n);
+    const auto wanted = static_cast<std::size_t>(std::ceil(2 * std::sqrt(n_meant)));
     const std::size_t n_samples = std::min(n, wanted);
     for (std::size_t i = 0; i < n_samples; ++i) {
       const std::size_t at = scattered(i, n_samples, n);
@@ -43,7 +29,7 @@ struct Sample {
       bounds = merged(bounds, boxes.back());
       are_valid = are_valid && is_valid(boxes.back());
     }
-    share = static_cast<double>(n_samples) / static_cast<double>(n);
+    share = static_cast<double>(n_samples) / n_meant;
   }
 
   std::vector<std::uint32_t> objects;
@@ -97,14 +83,14 @@ Overlaps overlaps(const Sample<Real>& a, std::uint32_t i, const Sample<Real>& b,
 }  // namespace
 
 template <class Real>
-std::optional<double> choose_pieces(ThinSets<Real> sets, const PairOptions& options) {
+std::optional<double> choose_pieces(ThinSets<Real> sets, const PairOptions& options, double scale) {
   for (const auto& set : sets)
-    if (set.boxes.empty() || !seem_thin(set)) return {};
+    if (!detail::seem_thin(set.capsules, set.boxes.size())) return {};
   const bool by_model = divides(options);
   // What is no valid search is refused by the search without capsules.
   if (by_model && (sets.size() == 2 || options.models.size() != sets.front().boxes.size()))
     return {};
-  const Sample<Real> a(sets.front()), b(sets.back());
+  const Sample<Real> a(sets.front(), scale), b(sets.back(), scale);
   if (!a.are_valid || !b.are_valid) return {};
   SampledPairs sampled;
   const detail::PairSink sink{&sampled, &SampledPairs::call};
@@ -129,7 +115,7 @@ std::optional<double> choose_pieces(ThinSets<Real> sets, const PairOptions& opti
       n_sampled;
   const double n_pairs = n_sampled / (a.share * b.share);
   double n_objects = 0;
-  for (const auto& set : sets) n_objects += static_cast<double>(set.boxes.size());
+  for (const auto& set : sets) n_objects += scale * static_cast<double>(set.boxes.size());
 
   std::optional<double> best;
   double least = n_pairs * (costs::per_pair + costs::per_test);
@@ -175,7 +161,20 @@ std::optional<double> choose_pieces(ThinSets<Real> sets, const PairOptions& opti
   return best;
 }
 
-template std::optional<double> choose_pieces(ThinSets<float>, const PairOptions&);
-template std::optional<double> choose_pieces(ThinSets<double>, const PairOptions&);
+template std::optional<double> choose_pieces(ThinSets<float>, const PairOptions&, double);
+template std::optional<double> choose_pieces(ThinSets<double>, const PairOptions&, double);
 
 }  // namespace tess::collide::search
+
+bool tess::collide::detail::seem_thin(const Capsules& capsules, std::size_t n) {
+  const std::size_t n_samples = std::min<std::size_t>(n, 64);
+  std::size_t n_thin = 0;
+  for (std::size_t i = 0; i < n_samples; ++i) {
+    const Capsule capsule = capsules[search::scattered(i, n_samples, n)];
+    double length = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+      length = std::max(length, std::abs(capsule.to[k] - capsule.from[k]));
+    if (16 * capsule.radius < length) ++n_thin;
+  }
+  return 2 * n_thin > n_samples;
+}

@@ -10,9 +10,11 @@ namespace tess::collide::search {
 template <class Real>
 using ThinSets = std::span<const ObjectsWithCapsules<Real>>;
 
-/// The longest extent of a piece, or ThinObjects::whole; nothing if the capsules do not pay.
+/// The longest extent of a piece, or ThinObjects::whole; nothing if the capsules do not pay. As if
+/// there were `scale` objects for each.
 template <class Real>
-[[nodiscard]] std::optional<double> choose_pieces(ThinSets<Real> sets, const PairOptions& options);
+[[nodiscard]] std::optional<double> choose_pieces(ThinSets<Real> sets, const PairOptions& options,
+                                                  double scale = 1);
 
 /// Whether pairs within a model do not count.
 [[nodiscard]] inline bool divides(const PairOptions& options) {

@@ -45,7 +45,7 @@ same() {  # same COMMAND…: gives the hash of the first run.
   if [[ $code == 0 && $(value_of result_hash) == "$want" ]]; then pass; else fail "(exit $code) $*"; fi
 }
 for arguments in "planes:8192 --triangles --move drift:0.3 --steps 3" "boxes:2000 --move drift --steps 2" \
-  "crowd:4096 --triangles --self --steps 2" "disparity:2000" "lshapes:40 --triangles"; do
+  "crowd:4096 --triangles --self --steps 2" "disparity:2000" "lshapes:40 --triangles" "long_needles:3000 --triangles"; do
   read -ra what <<<"$arguments"
   "$scene" "${what[@]}" --json "$scratch/now.json" >"$scratch/out.txt" || fail "$arguments"
   want=$(value_of result_hash)

@@ -5,6 +5,7 @@
 #include "collide/collider.hpp"
 #include "runtime/runtime.hpp"
 #include "runtime/testing.hpp"
+#include "tests/support/capsule_of_box.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/n_seeds.hpp"
 
@@ -26,6 +27,8 @@ struct Scene {
   std::int32_t n_models = 1;
   std::int32_t round = 0;    ///< boxes move from round to round
   std::int32_t n_large = 0;  ///< boxes per client that are 40 times as large, so on a higher level
+  /// Boxes may have capsules around them, which changes no pair.
+  std::int32_t n_with_capsules = 0;  ///< clients whose boxes have some
 };
 
 /// The boxes of a client, as a function of the scene, so that the oracle can compute them too. In
@@ -105,6 +108,7 @@ struct Collision {
   Report report;
   Callback<void> taken;
 };
+constexpr double inf = std::numeric_limits<double>::infinity();
 constexpr std::int32_t kRounds = 2, kOverlapping = 3;
 
 class Client : public Chare<Client, Index1> {
@@ -112,7 +116,7 @@ class Client : public Chare<Client, Index1> {
   void submit(const Collider& collider, const Scene& scene) {
     reported_.clear();
     n_refused_ = 0;
-    collider.submit(boxes_of(scene, index().x));
+    submit_more(collider, scene);
   }
   /// Submits the same boxes, the last with a NaN. All of them are refused.
   void submit_bad(const Collider& collider, const Scene& scene) {
@@ -146,7 +150,11 @@ class Client : public Chare<Client, Index1> {
     }
   }
   void submit_more(const Collider& collider, const Scene& scene) {
-    collider.submit(boxes_of(scene, index().x));
+    const std::vector<Item> items = boxes_of(scene, index().x);
+    std::vector<Capsule> capsules;
+    if (index().x < scene.n_with_capsules)
+      for (const Item& item : items) capsules.push_back(test::capsule_of_box(item.box));
+    collider.submit(items, capsules);
   }
   /// Of one model. Does not need to know the collider.
   void submit_early(const Collider& collider, const Scene& scene) {
@@ -325,7 +333,9 @@ Problem problem_of(std::uint64_t seed) {
                    static_cast<std::int32_t>(20 + seed % 3 * 10),
                    static_cast<std::int32_t>(1 + seed % 3),
                    0,
-                   0};
+                   0,
+                   seed % 5 < 2 ? static_cast<std::int32_t>(seed % 9) : 0};
+  problem.options.piece_length = std::array{0.0, 0.01, 0.1, 0.5, 2.0, inf}[seed / 2 % 6];
   const double size = std::array{0.25, 0.5, 0.7, 1.3, 10.0, 1e-3}[seed % 6];
   problem.options.origin = {seed % 4 == 0 ? 0 : 0.1, 0, -0.3};
   if (seed % 3 == 0) {  // chosen; the scene has a few large boxes

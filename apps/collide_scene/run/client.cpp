@@ -1,5 +1,7 @@
 #include "apps/collide_scene/run/client.hpp"
 
+#include "collide/pairs.hpp"
+
 #include <algorithm>
 #include <unordered_map>
 
@@ -22,14 +24,19 @@ void Client::submit(const Collider& collider) {
   boxes_ = piece_.boxes;
   boxes_.reserve(piece_.triangles.size() + piece_.boxes.size());
   for (const Triangle& triangle : piece_.triangles) boxes_.push_back(box_of(triangle));
+  // Without exact tests the pairs of boxes are the answer.
+  std::vector<Capsule> capsules;
+  if (piece_.exact) capsules = thin_capsules_of(std::span<const Triangle>(piece_.triangles));
   const std::vector<std::uint32_t>& models = piece_.models;
   // One list per run of a model.
   for (std::size_t begin = 0, end = 0; begin < boxes_.size(); begin = end) {
     end = models.empty() ? boxes_.size() : begin + 1;
     while (end < boxes_.size() && models[end] == models[begin]) ++end;
-    collider.submit(Objects{owner_of(index()), ModelId{models.empty() ? 0 : models[begin]},
-                            std::span(boxes_).subspan(begin, end - begin),
-                            static_cast<LocalId>(begin)});
+    collider.submit(
+        Objects{owner_of(index()), ModelId{models.empty() ? 0 : models[begin]},
+                std::span(boxes_).subspan(begin, end - begin), static_cast<LocalId>(begin),
+                capsules.empty() ? std::span<const Capsule>()
+                                 : std::span<const Capsule>(capsules).subspan(begin, end - begin)});
   }
 }
 

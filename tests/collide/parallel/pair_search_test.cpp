@@ -3,6 +3,7 @@
 
 #include "collide/collider.hpp"
 #include "runtime/runtime.hpp"
+#include "tests/support/capsule_of_box.hpp"
 #include "tests/support/catch.hpp"
 
 #include <array>
@@ -18,9 +19,12 @@ using namespace tess::collide;
 /// Owns equal boxes, and adds up what it receives.
 class Crowd : public Chare<Crowd> {
  public:
-  void submit(const Collider& collider, std::int32_t n_boxes) {
+  void submit(const Collider& collider, std::int32_t n_boxes, bool in_pieces) {
     const std::vector<Aabb> boxes(static_cast<std::size_t>(n_boxes), Aabb{{0, 0, 0}, {1, 1, 1}});
-    collider.submit(Objects{owner_of(index()), static_cast<ModelId>(index().x), boxes});
+    std::vector<Capsule> capsules;
+    if (in_pieces) capsules = test::capsules_of_boxes(boxes);
+    collider.submit(
+        Objects{owner_of(index()), static_cast<ModelId>(index().x), boxes, {}, capsules});
   }
   void receive(const Hits& hits) {
     largest_ = std::max<std::uint64_t>(largest_, hits.pairs.size());
@@ -41,48 +45,55 @@ class Crowd : public Chare<Crowd> {
   std::uint64_t n_ = 0, sum_ = 0, largest_ = 0;
 };
 
-Task collide_crowds(std::int32_t n_boxes, PairRules rules, std::vector<std::uint64_t>& received) {
+Task collide_crowds(std::int32_t n_boxes, bool in_pieces, PairRules rules,
+                    std::vector<std::uint64_t>& received) {
   Collider collider;
   ArrayProxy<Crowd> crowds;
   co_await epoch([&] {
-    collider = make_collider({.rules = rules});
+    collider = make_collider({.rules = rules, .piece_length = 0.5});
     crowds = create<Crowd>(range(2));
   });
-  co_await epoch([&] { crowds.broadcast<&Crowd::submit>(collider, n_boxes); });
+  co_await epoch([&] { crowds.broadcast<&Crowd::submit>(collider, n_boxes, in_pieces); });
   co_await run_collision(collider, {report_to<&Crowd::receive>(crowds), {}});
   Future<std::vector<std::uint64_t>> all;
   crowds.broadcast<&Crowd::gather>(all.callback());
   received = co_await all;
 }
 
+/// Of n boxes per crowd: pairs (i, j) of the two crowds, and the pairs within one.
+void check_received(const std::vector<std::uint64_t>& received, std::uint64_t n,
+                    WithinModel within) {
+  const std::uint64_t sum = n * (n - 1) / 2, squares = sum * (2 * n - 1) / 3;
+  const bool has_within = within == WithinModel::test;
+  const std::uint64_t n_pairs = n * n + (has_within ? sum : 0);
+  const std::uint64_t products = sum * sum + (has_within ? (sum * sum - squares) / 2 : 0);
+  REQUIRE(received.size() == 6);
+  for (const std::size_t crowd : {std::size_t{0}, std::size_t{3}}) {
+    REQUIRE(received[crowd] == n_pairs);
+    REQUIRE(received[crowd + 1] == products);
+    REQUIRE(received[crowd + 2] <= most_pairs);
+  }
+}
+
 }  // namespace
 
 TEST_CASE("each pair of equal boxes is reported once, in portions",
           "[collide][parallel][pair_search]") {
-  constexpr std::int32_t n = 900;
-  const std::uint64_t sum = std::uint64_t{n} * (n - 1) / 2, squares = sum * (2 * n - 1) / 3;
   for (const WithinModel within : {WithinModel::test, WithinModel::skip})
-    for (const std::string option :
-         {"--pes=1", "--pes=2", "--sim=pes=3,cost=100ns,migrate=0.1,seed=5",
-          "--sim=pes=2,per-process=1,cost=100ns,migrate=0.1,seed=8"}) {
-      std::string name = "test", argument = option;
-      std::array<char*, 3> argv{name.data(), argument.data(), nullptr};
-      int argc = 2;
-      Setup setup = take_options(argc, argv.data());
-      std::vector<std::uint64_t> received;
-      CAPTURE(option, within == WithinModel::test);
-      REQUIRE(run(setup, [&]() -> Task {
-                return collide_crowds(n, {Touching::counts, within}, received);
-              }) == 0);
-      // Pairs (i, j) of the two crowds, and the pairs within one.
-      const bool has_within = within == WithinModel::test;
-      const std::uint64_t n_pairs = n * n + (has_within ? sum : 0);
-      const std::uint64_t products = sum * sum + (has_within ? (sum * sum - squares) / 2 : 0);
-      REQUIRE(received.size() == 6);
-      for (const std::size_t crowd : {std::size_t{0}, std::size_t{3}}) {
-        REQUIRE(received[crowd] == n_pairs);
-        REQUIRE(received[crowd + 1] == products);
-        REQUIRE(received[crowd + 2] <= most_pairs);
+    for (const bool in_pieces : {false, true})
+      for (const std::string option :
+           {"--pes=1", "--pes=2", "--sim=pes=3,cost=100ns,migrate=0.1,seed=5",
+            "--sim=pes=2,per-process=1,cost=100ns,migrate=0.1,seed=8"}) {
+        const std::int32_t n = in_pieces ? 520 : 900;
+        std::string name = "test", argument = option;
+        std::array<char*, 3> argv{name.data(), argument.data(), nullptr};
+        int argc = 2;
+        Setup setup = take_options(argc, argv.data());
+        std::vector<std::uint64_t> received;
+        CAPTURE(option, in_pieces, within == WithinModel::test);
+        REQUIRE(run(setup, [&]() -> Task {
+                  return collide_crowds(n, in_pieces, {Touching::counts, within}, received);
+                }) == 0);
+        check_received(received, static_cast<std::uint64_t>(n), within);
       }
-    }
 }

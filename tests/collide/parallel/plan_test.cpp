@@ -2,10 +2,13 @@
 #include "collide/parallel/plan.hpp"
 
 #include "collide/pairs.hpp"
+#include "runtime/core/hash.hpp"
 #include "tests/support/catch.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <utility>
 #include <vector>
@@ -34,8 +37,8 @@ double objects_per_voxel(int n, std::int32_t n_pes) {
     all = JoinSummaries{}.combine(std::move(all), Summary(objects, static_cast<std::int32_t>(pe),
                                                           n_sampled_per_pe({}, n_pes)));
   }
-  const Plan plan = make_plan(JoinSummaries{}.finish(std::move(all)), n_pes, {}, {},
-                              {.within_model = WithinModel::test}, 1);
+  const Plan plan = make_plan(JoinSummaries{}.finish(std::move(all)), n_pes,
+                              {.rules = {.within_model = WithinModel::test}}, 1);
   REQUIRE_FALSE(plan.nothing);
   return plan.size[0] * plan.size[1];
 }
@@ -74,6 +77,65 @@ TEST_CASE("many PEs send small summaries, without boxes if the size of a voxel i
   objects.append(Objects{.boxes = boxes}, PeId{0});
   CHECK(Summary(objects, 0, 0).sample.empty());
   CHECK(Summary(objects, 0, 3).sample.size() == 3);
+}
+
+namespace {
+
+/// Diagonals of boxes of this length, of a PE: the capsule of a box begins in its lower corner.
+Summary summary_of(std::int32_t pe, std::size_t n, double length, bool with_capsules) {
+  Random random(static_cast<std::uint64_t>(pe));
+  std::vector<Aabb> boxes(n);
+  std::vector<Capsule> capsules(with_capsules ? n : 0);
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      boxes[i].lo[k] = random.unit();
+      boxes[i].hi[k] = boxes[i].lo[k] + length;
+    }
+    if (with_capsules) capsules[i] = {boxes[i].lo, boxes[i].hi, 0};
+  }
+  ObjectList objects;
+  objects.append(Objects{{}, {}, boxes, {}, capsules}, PeId{pe});
+  return Summary(objects, pe, 2048);
+}
+
+}  // namespace
+
+TEST_CASE("capsules stand beside their boxes in a sample of several PEs",
+          "[collide][parallel][pieces]") {
+  Summary all =
+      JoinSummaries{}.combine(summary_of(2, 50, 0.1, true), summary_of(0, 30, 0.1, false));
+  all = JoinSummaries{}.combine(summary_of(3, 20, 0.1, false), std::move(all));
+  all =
+      JoinSummaries{}.finish(JoinSummaries{}.combine(std::move(all), summary_of(1, 40, 0.1, true)));
+  REQUIRE(all.sample.size() == 140);
+  REQUIRE(all.capsules.size() == 140);
+  for (std::size_t i = 0; i < 140; ++i) {
+    CAPTURE(i);
+    const bool is_known = i >= 30 && i < 120;  // of PEs 1 and 2
+    CHECK(std::isfinite(all.capsules[i].radius) == is_known);
+    if (is_known) CHECK(all.capsules[i].from == all.sample[i].lo);
+  }
+  CHECK(all.largest_radius == std::numeric_limits<double>::infinity());
+}
+
+TEST_CASE("pieces have voxels of their size, on levels up to that of the largest",
+          "[collide][parallel][pieces]") {
+  const ColliderOptions options{.rules = {.within_model = WithinModel::test}};
+  const Summary needles = summary_of(0, 20000, 0.2, true);
+  const Plan plan = make_plan(needles, 1, options, 1);
+  REQUIRE(plan.pieces.used);
+  CHECK(plan.pieces.longest < 0.1);
+  CHECK(plan.size[0] < make_plan(summary_of(0, 20000, 0.2, false), 1, options, 1).size[0]);
+  CHECK(plan.levels == 1);
+  // Of objects without capsules nothing is known: they may be as large as any.
+  const Summary mixed = JoinSummaries{}.finish(
+      JoinSummaries{}.combine(needles, summary_of(1, 10, 100 * plan.size[0], false)));
+  ColliderOptions given = options;
+  given.size = plan.size;
+  given.piece_length = plan.pieces.longest;
+  const Plan of_mixed = make_plan(mixed, 2, given, 1);
+  CHECK(of_mixed.highest() == of_mixed.level_of(100 * plan.size[0]));
+  CHECK(of_mixed.highest() > 0);
 }
 
 }  // namespace tess::collide

@@ -1,11 +1,13 @@
 // Collisions over real processes and on threads, compared with all pairs: run by ctest. Two clients
 // per PE have boxes at random places, which move from round to round; a third of the boxes are equal,
 // so that a voxel has more pairs than one message. Clients and voxels migrate between rounds, and
-// clients while their pairs are found. In every other round one owner receives a pair, otherwise both.
+// clients while their pairs are found. In every other round one owner receives a pair, otherwise both. In
+// some rounds boxes have capsules and are searched in pieces, which changes no pair.
 #include "collide/collider.hpp"
 #include "runtime/balance.hpp"
 #include "runtime/core/hash.hpp"
 #include "runtime/runtime.hpp"
+#include "tests/support/capsule_of_box.hpp"
 
 #include <cstdint>
 #include <random>
@@ -83,7 +85,11 @@ class Client : public Chare<Client> {
     receivers_ = receivers_in(round);
     const std::int32_t me = index().x;
     const std::vector<Aabb> boxes = boxes_of(me, static_cast<std::int32_t>(array().size()), round);
-    collider.submit(Objects{owner_of(index()), model_of(me), boxes});
+    // In some rounds all boxes have capsules around them, in some those of even clients.
+    std::vector<Capsule> capsules;
+    if (round % 3 == 1 || (round % 3 == 2 && me % 2 == 0))
+      capsules = test::capsules_of_boxes(boxes);
+    collider.submit(Objects{owner_of(index()), model_of(me), boxes, {}, capsules});
   }
   /// Moves on after every third message.
   void receive(const Hits& hits) {
@@ -109,7 +115,7 @@ Task collide_rounds() {
   Collider collider;
   ArrayProxy<Client> clients;
   co_await epoch([&] {
-    collider = make_collider({});
+    collider = make_collider({.piece_length = 0.2});
     clients = create<Client>(range(n_clients));
   });
   const BalancerProxy voxels = start_balancing(collider.voxels, {.strategy = "rotate"});
