@@ -130,27 +130,27 @@ void ObjectList::append(std::span<const Item> items, std::span<const Capsule> ca
 
 void ObjectList::divide(const search::Frame& frame, double longest, PeId pe) {
   number_objects();
-  search::Scratch<Aabb> boxes;
-  std::vector<std::uint32_t> source_of, local;
-  const std::uint32_t n_objects = size();
+  std::swap(boxes_, undivided_);
+  boxes_.resize(0);
+  const std::uint32_t n_objects = static_cast<std::uint32_t>(undivided_.size());
+  const std::vector<std::uint32_t> source_of = std::move(source_of_), local = std::move(local_);
+  source_of_.clear();
+  local_.clear();
   for (std::uint32_t i = 0; i < n_objects; ++i) {
-    const Aabb& box = boxes_.data()[i];
-    const std::size_t begin = boxes.size();
+    const Aabb& box = undivided_.data()[i];
+    const std::size_t begin = boxes_.size();
     int n = search::n_pieces(capsule(i), longest);
     // Entries have 28 bits.
     if (begin + static_cast<std::size_t>(n) + n_objects - i > search::most_objects) n = 1;
     pieces_.add_object({box, capsule(i), static_cast<std::uint64_t>(pe.value) << 32 | i, n, 0},
                        frame);
-    boxes.resize(begin + static_cast<std::size_t>(n));
-    const Aabb* const end = search::cut(box, capsule(i), n, boxes.data() + begin);
-    boxes.resize(static_cast<std::size_t>(end - boxes.data()));
-    for (std::uint32_t piece = 0; piece < boxes.size() - begin; ++piece) pieces_.add_piece(piece);
-    source_of.resize(boxes.size(), source_of_[i]);
-    local.resize(boxes.size(), local_[i]);
+    boxes_.resize(begin + static_cast<std::size_t>(n));
+    const Aabb* const end = search::cut(box, capsule(i), n, boxes_.data() + begin);
+    boxes_.resize(static_cast<std::size_t>(end - boxes_.data()));
+    for (std::uint32_t piece = 0; piece < boxes_.size() - begin; ++piece) pieces_.add_piece(piece);
+    source_of_.resize(boxes_.size(), source_of[i]);
+    local_.resize(boxes_.size(), local[i]);
   }
-  std::swap(boxes_, boxes);
-  std::swap(source_of_, source_of);
-  std::swap(local_, local);
 }
 
 /// A list keeps the numbers of the sources only from the second source on.

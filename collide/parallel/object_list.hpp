@@ -123,6 +123,7 @@ class ObjectList {
   std::vector<std::uint32_t> local_;      // per object; empty: by the shift of the source
   std::vector<Capsule> capsules_;         // per object that was submitted; empty: none is known
   PieceTable pieces_;
+  search::Scratch<Aabb> undivided_;  // the memory is kept
   bool several_models_ = false;
   Aabb bounds_ = no_box<double, 3>();
   std::array<std::uint8_t, 2048> octaves_{};

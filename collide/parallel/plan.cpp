@@ -207,8 +207,10 @@ Plan make_plan(const Summary& summary, std::int32_t n_pes, const ColliderOptions
     return plan;
   plan.nothing = false;
   plan.pieces = choose_pieces(summary, options);
-  const bool in_pieces = plan.pieces.used && std::isfinite(plan.pieces.longest);
-  const Summary boxes = in_pieces ? divided(summary, plan.pieces.longest) : summary;
+  std::optional<Summary> of_pieces;
+  if (plan.pieces.used && std::isfinite(plan.pieces.longest))
+    of_pieces = divided(summary, plan.pieces.longest);
+  const Summary& boxes = of_pieces ? *of_pieces : summary;
   const bool is_chosen = options.size == Point{0, 0, 0};
   double widest = 0;
   for (std::size_t k = 0; k < 3; ++k)

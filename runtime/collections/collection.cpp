@@ -9,6 +9,8 @@
 #include "runtime/scheduler/interfaces/element_mover.hpp"
 #include "runtime/scheduler/runtime.hpp"
 
+#include <exception>
+
 namespace tess::detail {
 
 std::string element_text(const Element& element) {
@@ -20,7 +22,14 @@ std::string element_key(const Element& element) {
 }
 
 std::string element_state(const Element& element) {
-  return Collection::of(element).state_of(element);
+  // A report goes on.
+  try {
+    return Collection::of(element).state_of(element);
+  } catch (const std::exception& error) {
+    return std::string("its describe_state() throws: ") + error.what();
+  } catch (...) {
+    return "its describe_state() throws";
+  }
 }
 
 void Element::after_construction(const char* what, std::function<void()> call) {

@@ -211,6 +211,8 @@ refuses empty.exo "${replays[@]}" --replay "$scratch/empty.exo"
 refuses modulo "${replays[@]}" --replay "$scratch/empty.exo" --fold nonsense
 refuses --plot "${lab[@]}" --plot "$scratch/empty.exo/plots"
 refuses --json "$bin/lb_lab" --sim pes=4 --json "$scratch/missing/result.json"
+refuses "greedy is given twice" "${lab[@]}" --strategy greedy,greedy
+refuses "4 is given twice" "${lab[@]}" --per-pe 4,8,4
 refuses --nonsense "${lab[@]}" --nonsense
 refuses --snapshot-format "${lab[@]}" --snapshot-format zip
 refuses "3 limits for 4 PEs" "${lab[@]}" --memory-limit 1,2,3

@@ -47,6 +47,9 @@ std::string explanation(const Report& report) {
                       : report.n_triangles > 0
                           ? "left out of the run (--triangles); made once after it, untimed"
                           : "left out: the objects are boxes");
+  line("capsules", rules.triangles ? "used if most triangles are long and thin: pairs whose "
+                                     "capsules are apart are not tested"
+                                   : "left out: boxes that overlap are pairs");
   line("models",
        report.n_models == 0
            ? "left out: every pair counts"
@@ -82,6 +85,8 @@ std::string table(const Report& report) {
        fmt::format("voxel size {}, {} levels, {} voxels, {} entries, {} objects left out",
                    or_unknown(grid.voxel_size), or_unknown(grid.levels), or_unknown(grid.voxels),
                    or_unknown(grid.entries), or_unknown(grid.left_out)));
+  if (grid.pieces.value_or(0) != 0)
+    line("", fmt::format("{} pieces of long thin triangles", *grid.pieces));
   out += fmt::format("  {:>6} {:>12} {:>12} {:>12} {:>12}\n", "step", "candidates", "pairs", "ms",
                      "ns/object");
   constexpr std::size_t most_rows = 20;
@@ -131,6 +136,7 @@ std::string json(const Report& report) {
   set("voxels", result.grid.voxels);
   set("entries", result.grid.entries);
   set("left_out", result.grid.left_out);
+  set("pieces", result.grid.pieces);
   set("grid_bytes", result.grid.bytes);
   out["seconds_per_step"] = result.seconds_per_step();
   out["ns_per_object"] = ns_per_object(report);

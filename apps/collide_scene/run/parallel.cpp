@@ -74,6 +74,7 @@ tess::Task ParallelCollisions::end(RunResult& result) {
   result.grid.voxels = last_.n_voxels;
   result.grid.entries = last_.n_entries;
   result.grid.left_out = last_.n_left_out;
+  result.grid.pieces = last_.n_pieces;
   tess::Future<std::uint64_t> bytes;
   clients_.broadcast<&Client::give_memory>(bytes.callback());
   result.peak_memory_bytes = co_await bytes;

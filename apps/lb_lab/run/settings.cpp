@@ -23,7 +23,18 @@ std::string obstacle(const Settings& s, const std::string& name) {
   return tess::balance::obstacle(name, {});
 }
 
+/// A row, and the file of a snapshot, would stand for two runs.
+template <class Value>
+void refuse_repeated(const char* option, const std::vector<Value>& values) {
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (std::count(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(i), values[i]) > 0)
+      refuse(option, ": ", values[i], " is given twice; give each value once");
+}
+
 void expand_names(Settings& s) {
+  refuse_repeated("--workload", s.workloads);
+  refuse_repeated("--per-pe", s.per_pe);
+  refuse_repeated("--strategy", s.strategies);
   if (std::ranges::count(s.workloads, "all") > 0) {
     s.workloads.clear();
     for (const Workload& one : workloads()) s.workloads.push_back(one.name);

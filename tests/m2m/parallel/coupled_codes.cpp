@@ -4,6 +4,7 @@
 //
 //     test_coupled_codes            all of them
 //     test_coupled_codes NAME…      some of them
+#include "collide/collider.hpp"
 #include "m2m/coupling.hpp"
 #include "m2m/coupling_weights.hpp"
 #include "m2m/kuhn.hpp"
@@ -468,6 +469,24 @@ Task destroyed() {
   co_await end(codes);
 }
 
+/// The voxels of a search end before the next one, which makes them again, also while values are under way.
+Task retired() {
+  Two codes;
+  co_await make(codes, 4, 5);
+  Coupling there(codes.left, codes.right);
+  co_await there.search();
+  for (int k = 1; k <= 3; ++k) {
+    co_await step(codes, k);
+    Task apply = there.apply<&Left::out, &Right::in>();
+    for (int call = 0; call < 2; ++call)  // the first one finds them used
+      co_await epoch([&] { collide::retire(there.collider()); });
+    co_await apply;
+    co_await expect(codes.right, k);
+    co_await there.search();
+  }
+  co_await end(codes);
+}
+
 /// Ten thousand applications: the same bits, and flat memory.
 Task repeats() {
   Two codes;
@@ -493,11 +512,19 @@ Task repeats() {
 }
 
 using Program = Task (*)();
-const std::vector<std::pair<std::string, Program>> programs{
-    {"components", components},           {"migration", migration},     {"balancing", balancing},
-    {"three_at_once", three_at_once},     {"many_fields", many_fields}, {"motion", motion},
-    {"empty_pieces", empty_pieces},       {"births", births},           {"two_kinds", two_kinds},
-    {"weights_by_hand", weights_by_hand}, {"destroyed", destroyed},     {"repeats", repeats}};
+const std::vector<std::pair<std::string, Program>> programs{{"components", components},
+                                                            {"migration", migration},
+                                                            {"balancing", balancing},
+                                                            {"three_at_once", three_at_once},
+                                                            {"many_fields", many_fields},
+                                                            {"motion", motion},
+                                                            {"empty_pieces", empty_pieces},
+                                                            {"births", births},
+                                                            {"two_kinds", two_kinds},
+                                                            {"weights_by_hand", weights_by_hand},
+                                                            {"destroyed", destroyed},
+                                                            {"retired", retired},
+                                                            {"repeats", repeats}};
 
 Task run_programs(std::vector<std::string> names) {
   for (const auto& [name, program] : programs) {

@@ -6,10 +6,10 @@
 source "$(dirname "$0")/../../support/checks.sh"
 program=$1
 limit=120
-codes=(components migration balancing three_at_once many_fields motion empty_pieces births two_kinds weights_by_hand destroyed)
+codes=(components migration balancing three_at_once many_fields motion empty_pieces births two_kinds weights_by_hand destroyed retired)
 # all_hold COMMAND…: every code reports that it holds.
 all_hold() {
-  exits 0 "destroyed: holds" "$@" "${codes[@]}"
+  exits 0 "retired: holds" "$@" "${codes[@]}"
   [[ $(grep -c ': holds$' "$scratch/out") -eq ${#codes[@]} ]] && pass || fail "not all hold: $*"
 }
 

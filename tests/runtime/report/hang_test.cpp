@@ -9,6 +9,7 @@
 
 #include <atomic>
 #include <mutex>
+#include <stdexcept>
 #include <thread>
 
 namespace {
@@ -78,6 +79,19 @@ class Partner : public tess::Chare<Partner, tess::Index2> {
   int step_ = 0;
 };
 
+/// Cannot say how far it is.
+class Mute : public tess::Chare<Mute> {
+ public:
+  tess::Task wait() {
+    tess::Future<int> never;
+    co_await never;
+  }
+  [[nodiscard]] std::string describe_state() const {
+    if (index().x == 0) throw std::runtime_error("no state");
+    throw 7;
+  }
+};
+
 std::atomic<bool> slow_may_end{false};
 
 class Slow : public tess::Chare<Slow, tess::Index1> {
@@ -113,6 +127,16 @@ TEST_CASE("a deadlock of replies is reported as a cycle, on any schedule", "[run
     CHECK(outcome.says("Partner[3,5] waits for Partner[3,4].level"));
     CHECK(outcome.says(", at step 16: Partner::step waits for the reply of Partner[3,5].depth"));
   }
+}
+
+TEST_CASE("a report goes on if describe_state() throws", "[runtime][hang]") {
+  const Outcome outcome =
+      outcome_of(simulated(2), [] { tess::create<Mute>(tess::range(2)).broadcast<&Mute::wait>(); });
+  CHECK(outcome.exit_code == 1);
+  CHECK(outcome.says("Mute[0]"));
+  CHECK(outcome.says(", its describe_state() throws: no state: Mute::wait waits for a future"));
+  CHECK(outcome.says("Mute[1]"));
+  CHECK(outcome.says(", its describe_state() throws: Mute::wait waits for a future"));
 }
 
 TEST_CASE("elements of two arrays with the same index make no cycle", "[runtime][hang]") {
