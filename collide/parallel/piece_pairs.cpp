@@ -2,27 +2,23 @@
 
 #include "collide/search/thin_objects.hpp"
 
+#include <span>
+
 namespace tess::collide {
 namespace {
 
 using Object = PieceTable::Object;
 using Boxes = std::array<Aabb, search::most_pieces>;
 
-/// Whether piece p of a and piece q of b, which overlap, are the first ones that do. The nearest ones
-/// are looked at first: if there is an earlier pair, it is mostly one of them. Boxes of pieces touch where
-/// the objects may overlap.
+/// Whether piece p of a and piece q of b are the first ones that overlap. The pieces are made again.
 bool is_first(const Object& a, std::uint32_t p, const Object& b, std::uint32_t q) {
   if (a.n_pieces == 1 && b.n_pieces == 1) return true;
   Boxes of_a, of_b;
-  search::cut(a.box, a.capsule, a.n_pieces, of_a.data());
-  const Aabb* const end_b = search::cut(b.box, b.capsule, b.n_pieces, of_b.data());
-  const auto n_b = static_cast<std::uint32_t>(end_b - of_b.data());
-  for (std::uint32_t before = p + 1; before-- > 0;) {
-    if (before != p && !overlap(of_a[before], b.box, Touching::counts)) continue;
-    for (std::uint32_t other = before == p ? q : n_b; other-- > 0;)
-      if (overlap(of_a[before], of_b[other], Touching::counts)) return false;
-  }
-  return true;
+  const auto pieces = [](const Object& of, Boxes& boxes) {
+    return std::span<const Aabb>(boxes.data(),
+                                 search::cut(of.box, of.capsule, of.n_pieces, boxes.data()));
+  };
+  return search::are_first(pieces(a, of_a), p, pieces(b, of_b), q, b.box);
 }
 
 }  // namespace

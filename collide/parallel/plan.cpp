@@ -21,11 +21,6 @@ std::size_t most_sampled(std::int32_t n_pes) {
   return n_pes <= 64 ? 4096 : 2048;
 }
 
-/// NaN counts as infinite.
-double maximum(double a, double b) {
-  return std::isnan(a) || std::isnan(b) ? std::numeric_limits<double>::infinity() : std::max(a, b);
-}
-
 /// The values of the PEs, in the order of the PEs.
 template <class Value>
 std::vector<Value> by_pe(const std::vector<Summary::Sampled>& sampled,
@@ -73,21 +68,19 @@ void Summary::add(ModelId model) {
 }
 
 void Summary::add(const Aabb& box, const Capsule& capsule) {
-  double length = 0;
-  for (std::size_t k = 0; k < 3; ++k)
-    length = maximum(length, std::abs(capsule.to[k] - capsule.from[k]));
-  // A box that is not divided remains as it is.
+  const double length = search::longest_extent(capsule);
+  // A box that is not divided remains as it is. False for a NaN.
   const bool is_close = search::longest_extent(box) <= 2 * (length + 2 * capsule.radius);
-  longest_capsule = maximum(longest_capsule, length);
-  largest_radius = maximum(largest_radius, is_close ? capsule.radius : unknown_capsule.radius);
+  longest_capsule = std::max(longest_capsule, length);
+  largest_radius = std::max(largest_radius, is_close ? capsule.radius : unknown_capsule.radius);
 }
 
 Summary JoinSummaries::combine(Summary a, const Summary& b) const {
   a.n += b.n;
   a.bounds = merged(a.bounds, b.bounds);
   a.has_capsules = a.has_capsules || b.has_capsules;
-  a.longest_capsule = maximum(a.longest_capsule, b.longest_capsule);
-  a.largest_radius = maximum(a.largest_radius, b.largest_radius);
+  a.longest_capsule = std::max(a.longest_capsule, b.longest_capsule);
+  a.largest_radius = std::max(a.largest_radius, b.largest_radius);
   if (a.has_capsules) {
     a.capsules.resize(a.sample.size(), unknown_capsule);
     a.capsules.insert(a.capsules.end(), b.capsules.begin(), b.capsules.end());

@@ -171,10 +171,7 @@ bool tess::collide::detail::seem_thin(const Capsules& capsules, std::size_t n) {
   std::size_t n_thin = 0;
   for (std::size_t i = 0; i < n_samples; ++i) {
     const Capsule capsule = capsules[search::scattered(i, n_samples, n)];
-    double length = 0;
-    for (std::size_t k = 0; k < 3; ++k)
-      length = std::max(length, std::abs(capsule.to[k] - capsule.from[k]));
-    if (16 * capsule.radius < length) ++n_thin;
+    if (16 * capsule.radius < search::longest_extent(capsule)) ++n_thin;
   }
   return 2 * n_thin > n_samples;
 }

@@ -19,10 +19,15 @@ Real rounded_up(double x) noexcept {
 
 }  // namespace
 
-int n_pieces(const Capsule& capsule, double longest) noexcept {
+double longest_extent(const Capsule& capsule) noexcept {
   double length = 0;
   for (std::size_t k = 0; k < 3; ++k)
     length = std::max(length, std::abs(capsule.to[k] - capsule.from[k]));
+  return length;
+}
+
+int n_pieces(const Capsule& capsule, double longest) noexcept {
+  const double length = longest_extent(capsule);
   if (!std::isfinite(length) || !std::isfinite(capsule.radius)) return 1;
   const double n = std::ceil(length / longest);
   return n > 1 ? static_cast<int>(std::min<double>(n, most_pieces)) : 1;

@@ -44,12 +44,12 @@ class ThinObjects {
   [[nodiscard]] std::uint32_t owner(std::uint32_t piece) const noexcept {
     return in_pieces() ? owners_.data()[piece] : piece;
   }
-  /// The boxes of the pieces of an object.
+  /// The boxes of the pieces of an object: where they begin, and themselves.
   [[nodiscard]] std::uint32_t begin(std::uint32_t object) const noexcept {
     return begins_.data()[object];
   }
-  [[nodiscard]] std::uint32_t end(std::uint32_t object) const noexcept {
-    return begins_.data()[object + 1];
+  [[nodiscard]] std::span<const Box<Real, 3>> pieces(std::uint32_t object) const noexcept {
+    return boxes().subspan(begin(object), begins_.data()[object + 1] - begin(object));
   }
   [[nodiscard]] std::size_t bytes() const noexcept {
     return pieces_.bytes() + owners_.bytes() + begins_.bytes() + capsules_.bytes();
@@ -66,11 +66,29 @@ class ThinObjects {
 inline constexpr int most_pieces = 64;
 [[nodiscard]] int n_pieces(const Capsule& capsule, double longest) noexcept;
 
+/// Its longest extent on an axis, without the radius.
+[[nodiscard]] double longest_extent(const Capsule& capsule) noexcept;
+
 /// Writes the boxes of `n` pieces to `out`, and returns their end. A piece of the object is the part
 /// that is nearest to a piece of the capsule's segment, so the boxes contain the object together.
 /// Pieces of the capsule beside the object's box have none.
 template <class Real>
 Box<Real, 3>* cut(const Box<Real, 3>& box, const Capsule& capsule, int n,
                   Box<Real, 3>* out) noexcept;
+
+/// Whether piece p of x and piece q of y, whose boxes overlap, are the first ones of the two objects that
+/// do, in the order of the pieces of x. The nearest ones are looked at first: if there is an earlier pair,
+/// it is mostly one of them. Boxes of pieces touch where the objects may overlap.
+template <class Real>
+[[nodiscard]] bool are_first(std::span<const Box<Real, 3>> x, std::uint32_t p,
+                             std::span<const Box<Real, 3>> y, std::uint32_t q,
+                             const Box<Real, 3>& whole_y) noexcept {
+  for (std::uint32_t before = p + 1; before-- > 0;) {
+    if (before != p && !overlap(x[before], whole_y, Touching::counts)) continue;
+    for (auto other = before == p ? q : static_cast<std::uint32_t>(y.size()); other-- > 0;)
+      if (overlap(x[before], y[other], Touching::counts)) return false;
+  }
+  return true;
+}
 
 }  // namespace tess::collide::search

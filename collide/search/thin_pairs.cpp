@@ -88,19 +88,11 @@ class ThinPairs {
     return (is_one_set() ? i > j : swapped) ? is_first(y, q, j, x, p, i)
                                             : is_first(x, p, i, y, q, j);
   }
-  /// The nearest ones are looked at first: if there is an earlier pair, it is mostly one of them.
   [[nodiscard]] static bool is_first(const ThinObjects<Real>& x, std::uint32_t p, std::uint32_t i,
                                      const ThinObjects<Real>& y, std::uint32_t q,
                                      std::uint32_t j) noexcept {
-    const auto boxes_x = x.boxes(), boxes_y = y.boxes();
-    const Box<Real, 3>& whole_y = y.boxes_of_objects()[j];
-    for (std::uint32_t before = p + 1; before-- > x.begin(i);) {
-      const Box<Real, 3>& box = boxes_x[before];
-      if (before != p && !overlap(box, whole_y, Touching::counts)) continue;
-      for (std::uint32_t other = before == p ? q : y.end(j); other-- > y.begin(j);)
-        if (overlap(box, boxes_y[other], Touching::counts)) return false;
-    }
-    return true;
+    return are_first(x.pieces(i), p - x.begin(i), y.pieces(j), q - y.begin(j),
+                     y.boxes_of_objects()[j]);
   }
 
   const ThinObjects<Real>&a_, &b_;
