@@ -68,7 +68,7 @@ balanced() {  # balanced STRATEGY COMMAND…
   local strategy=$1
   shift
   same "$@" "$scratch/cut.json" --balance "$strategy"
-  grep -A6 '"balance":' "$scratch/again.json" | tr -d ' \n' | grep -qE '"rounds":[1-9][0-9]*,"moves":[1-9]'
+  [[ $(grep -A6 '"balance":' "$scratch/again.json" | tr -d ' \n') =~ \"rounds\":[1-9][0-9]*,\"moves\":[1-9] ]]
   check "the balancer of $* moves blocks" $?
 }
 balanced rotate "$particles" --pes 2

@@ -5,7 +5,7 @@ set -uo pipefail
 file=$1
 shift
 sentence=$(sed -n '1s|^// expect: ||p' "$file")
-if "$1" --version | grep -q clang && grep -q '^// expect of clang: ' "$file"; then
+if [[ $("$1" --version) == *clang* ]] && grep -q '^// expect of clang: ' "$file"; then
   sentence=$(sed -n '2s|^// expect of clang: ||p' "$file")
 fi
 if [[ -z $sentence ]]; then
@@ -16,7 +16,7 @@ if output=$("$@" -fsyntax-only "$file" 2>&1); then
   echo "$file compiles, but should not"
   exit 1
 fi
-if ! grep -E "error: " <<<"$output" | grep -qF -- "$sentence"; then
+if [[ $(grep "error: " <<<"$output") != *"$sentence"* ]]; then
   echo "$file does not fail with: $sentence"
   echo "$output" | head -20
   exit 1

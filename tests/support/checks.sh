@@ -32,7 +32,7 @@ exits() {
   shift 2
   timeout "$limit" "$@" >"$scratch/out" 2>"$scratch/err" </dev/null
   local code=$?
-  if [[ $code -eq $want_code ]] && cat "$scratch/out" "$scratch/err" | grep -q -- "$want" &&
+  if [[ $code -eq $want_code ]] && grep -q -- "$want" "$scratch/out" "$scratch/err" &&
     { [[ $want_code -ne 2 ]] || [[ $(wc -l <"$scratch/err") -eq 1 ]]; }; then
     pass
   else
