@@ -1,8 +1,10 @@
 #include "collide/collider.hpp"
 
+#include "collide/parallel/neighbours.hpp"
 #include "runtime/core/check.hpp"
 #include "runtime/core/error.hpp"
 
+#include <cmath>
 #include <exception>
 #include <utility>
 
@@ -14,18 +16,39 @@ Collider make_collider(const ColliderOptions& options) {
   if (!(options.piece_length >= 0))
     fail(ErrorCode::bad_argument, "make_collider() with pieces of length ", options.piece_length,
          ": give a positive length, infinity for whole objects, or 0 to have it chosen");
+  if (!(options.slack >= 0) || std::isinf(options.slack))
+    fail(ErrorCode::bad_argument, "make_collider() with a slack of ", options.slack,
+         ": give a positive length, or 0 to search in each collision");
   const auto voxels = create<Voxel>(sparse);
-  return {voxels, create_group<Manager>(voxels), options};
+  Collider collider{voxels, create_group<Manager>(voxels), options};
+  if (options.slack > 0)
+    collider.neighbours = create_group<Neighbours>(collider.managers, options.rules, options.slack);
+  return collider;
 }
 
-void Collider::submit_early(Submission objects) const {
-  if (Manager* manager = managers.local_or_null())
-    manager->receive(objects);
+void Collider::submit(const Objects& objects) const {
+  if (options.slack > 0)
+    neighbours.local().submit(objects);
   else
-    managers[my_pe()].send<&Manager::receive>(std::move(objects));
+    managers.local().submit(objects);
+}
+
+void Collider::submit(const std::vector<Item>& items, std::span<const Capsule> capsules) const {
+  if (options.slack > 0)
+    neighbours.local().submit(items, capsules);
+  else
+    managers.local().submit(items, capsules);
 }
 
 namespace {
+
+template <class G>
+void submit_early_to(const GroupProxy<G>& group, Submission&& objects) {
+  if (G* member = group.local_or_null())
+    member->receive(objects);
+  else
+    group[my_pe()].template send<&G::receive>(std::move(objects));
+}
 
 void check_not_destroyed_early(bool is_right) {
   TESS_CHECK(
@@ -33,40 +56,125 @@ void check_not_destroyed_early(bool is_right) {
       "a collider is destroyed while a collision of it runs: co_await run_collision() first");
 }
 
+Manager& remaining(const Collider& collider) {
+  Manager* const manager = collider.managers.local_or_null();
+  check_not_destroyed_early(manager != nullptr);
+  return *manager;
+}
+
+std::size_t n_sampled(const Collider& collider) {
+  return n_sampled_per_pe(collider.options.size, n_pes());
+}
+
 }  // namespace
+
+void Collider::submit_early(Submission objects) const {
+  if (options.slack > 0)
+    submit_early_to(neighbours, std::move(objects));
+  else
+    submit_early_to(managers, std::move(objects));
+}
 
 void Collider::destroy() const {
   const Manager* const manager = managers.local_or_null();
   check_not_destroyed_early(manager == nullptr || !manager->is_colliding());
+  if (options.slack > 0) {
+    const Neighbours* const kept = neighbours.local_or_null();
+    check_not_destroyed_early(kept == nullptr || !kept->is_colliding());
+    neighbours.destroy();
+  }
   voxels.destroy();
   managers.destroy();
 }
+
+namespace {
+
+/// The Managers have taken objects with this summary. At its end they have dropped them.
+Task collide_taken(Collider collider, std::uint64_t step, Summary summary, Report report) {
+  Plan plan;
+  std::exception_ptr refused;
+  try {
+    plan = make_plan(summary, n_pes(), collider.options, step);
+  } catch (...) {
+    refused = std::current_exception();
+  }
+  const auto body = [&] { collider.managers.broadcast<&Manager::begin>(step, plan, report); };
+  co_await epoch(body);
+  remaining(collider).end_step();
+  if (refused) std::rethrow_exception(refused);
+}
+
+/// Collides the objects of a collision of the Neighbours, with larger boxes or their own.
+Task search(Collider collider, std::uint64_t step, bool larger, Report report) {
+  const std::uint64_t own_step = remaining(collider).new_step();
+  Future<Summary> known;
+  collider.neighbours.broadcast<&Neighbours::enlarge>(step, own_step, larger, n_sampled(collider),
+                                                      known.callback());
+  const Summary summary = co_await known;
+  co_await collide_taken(collider, own_step, summary, report);
+}
+
+/// Finds pairs to keep. Sets `too_many` if they are, and then nothing is kept.
+Task find_kept(Collider collider, std::uint64_t step, bool& too_many) {
+  const Report to_neighbours{
+      report_to_neighbours(collider.neighbours, step), {}, Receivers::one_owner};
+  std::exception_ptr refused;
+  try {
+    co_await search(collider, step, true, to_neighbours);
+  } catch (...) {
+    refused = std::current_exception();
+  }
+  if (refused) {
+    const auto body = [&] { collider.neighbours.broadcast<&Neighbours::drop>(step); };
+    co_await epoch(body);
+    std::rethrow_exception(refused);
+  }
+  Future<bool> counted;
+  collider.neighbours.broadcast<&Neighbours::count>(step, counted.callback());
+  too_many = co_await counted;
+}
+
+/// A step of the Managers encloses the others, so that the collider is known to collide.
+Task collide_with_slack(Collider collider, std::uint64_t step, Report report,
+                        Callback<void> taken) {
+  Future<std::uint64_t> held;
+  collider.neighbours.broadcast<&Neighbours::prepare>(step, held.callback());
+  const bool must_search = co_await held == 0;
+  if (taken) taken();
+  bool as_they_are = must_search && collider.neighbours.local().keeps_none();
+  if (must_search && !as_they_are) co_await find_kept(collider, step, as_they_are);
+  if (as_they_are) {
+    co_await search(collider, step, false, report);
+    co_return;
+  }
+  const auto body = [&] { collider.neighbours.broadcast<&Neighbours::match>(step, report); };
+  co_await epoch(body);
+}
+
+}  // namespace
 
 Task run_collision(Collider collider, Report report, Callback<void> taken) {
   if (!report.call)
     fail(ErrorCode::bad_argument,
          "run_collision() with a report that nothing receives: its hits would be lost; give it "
          "report_to<&Client::receive>(clients)");
-  const ColliderOptions& o = collider.options;
   const std::uint64_t step = collider.managers.local().new_step();
+  if (collider.options.slack > 0) {
+    std::exception_ptr refused;
+    try {
+      co_await collide_with_slack(collider, step, report, taken);
+    } catch (...) {
+      refused = std::current_exception();
+    }
+    remaining(collider).end_step();
+    if (refused) std::rethrow_exception(refused);
+    co_return;
+  }
   Future<Summary> known;
-  collider.managers.broadcast<&Manager::prepare>(step, n_sampled_per_pe(o.size, n_pes()),
-                                                 known.callback());
+  collider.managers.broadcast<&Manager::prepare>(step, n_sampled(collider), known.callback());
   const Summary summary = co_await known;
   if (taken) taken();
-  Plan plan;
-  std::exception_ptr refused;
-  try {
-    plan = make_plan(summary, n_pes(), o, step);
-  } catch (...) {
-    refused = std::current_exception();
-  }
-  const auto body = [&] { collider.managers.broadcast<&Manager::begin>(step, plan, report); };
-  co_await epoch(body);
-  Manager* const manager = collider.managers.local_or_null();
-  check_not_destroyed_early(manager != nullptr);
-  manager->end_step();
-  if (refused) std::rethrow_exception(refused);
+  co_await collide_taken(collider, step, summary, report);
 }
 
 void report_statistics(const Collider& collider, const Callback<CollisionStatistics>& target) {
@@ -76,6 +184,7 @@ void report_statistics(const Collider& collider, const Callback<CollisionStatist
 void retire(const Collider& collider) {
   collider.voxels.broadcast<&Voxel::retire>();
   collider.managers.broadcast<&Manager::shrink>();
+  if (collider.options.slack > 0) collider.neighbours.broadcast<&Neighbours::forget>();
 }
 
 }  // namespace tess::collide

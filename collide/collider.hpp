@@ -30,6 +30,9 @@
 // Long thin objects may be submitted with capsules (capsule.hpp). If that pays, they are searched in
 // pieces, and pairs whose capsules are certainly apart are not reported: the receiver tests fewer.
 //
+// Objects that move little from a collision to the next: give ColliderOptions::slack. Then most
+// collisions only test pairs that were near before.
+//
 // The voxels remain for the next collision; retire() ends those that are idle. They can be
 // balanced: call tess::start_balancing(collider.voxels, options) before the first collision, and
 // co_await balancer.round() between two collisions. Measured loads are stored by the index of the
@@ -46,18 +49,19 @@
 
 namespace tess::collide {
 
+class Neighbours;
+
 /// A handle to the voxels and Managers of a collider. It can be copied and sent.
 struct Collider {
   ArrayProxy<Voxel> voxels;
   GroupProxy<Manager> managers;
   ColliderOptions options;
+  GroupProxy<Neighbours> neighbours{};  ///< if there is a slack
 
-  /// Pass objects of a client on this PE to the local Manager, which copies them. They throw Error as
-  /// it does.
-  void submit(const Objects& objects) const { managers.local().submit(objects); }
-  void submit(const std::vector<Item>& items, std::span<const Capsule> capsules = {}) const {
-    managers.local().submit(items, capsules);
-  }
+  /// Pass objects of a client on this PE to the local Manager, or Neighbours, which copies them. They
+  /// throw Error as it does.
+  void submit(const Objects& objects) const;
+  void submit(const std::vector<Item>& items, std::span<const Capsule> capsules = {}) const;
   /// The same within the epoch that creates the collider. If it is not known on this PE yet, the
   /// objects are a message that waits for it; then a box that is not valid ends the job.
   void submit_early(Submission objects) const;
@@ -69,7 +73,8 @@ struct Collider {
 };
 
 /// Creates the Managers and an empty array of voxels. Throws Error for a voxel size that is not
-/// positive, or zero on some axes only, and for a length of pieces that is negative or NaN.
+/// positive, or zero on some axes only, for a length of pieces that is negative or NaN, and for a
+/// slack that is negative or not finite.
 [[nodiscard]] Collider make_collider(const ColliderOptions& options);
 
 /// Collides all objects that were submitted. When the task is done, the owners have handled all

@@ -38,6 +38,11 @@ int run(tess::Setup& setup, int argc, char** argv, bool asked_for_pes) {
   line.option("--voxel-size", options.rules.voxel_size,
               "edge of a voxel (default: chosen from the objects)")
       .positive();
+  line.option(
+          "--slack LENGTH", options.rules.slack,
+          "on chares: keep the pairs of boxes that are larger by this, and test them alone while "
+          "each object stays within its larger box")
+      .positive();
   line.option("--repeat", options.repeat, "collisions per step; the fastest counts")
       .between(1, 1'000'000);
   line.option("--seed", options.seed, "of scenes with random places");
@@ -59,6 +64,11 @@ int run(tess::Setup& setup, int argc, char** argv, bool asked_for_pes) {
   if (options.serial && (asked_for_pes || on_processes))
     tess::fail(tess::ErrorCode::bad_argument,
                "--serial: is one thread; leave it out, or --pes, --sim and mpirun");
+  if (options.rules.slack > 0 && !asked_for_pes && !on_processes)
+    tess::fail(tess::ErrorCode::bad_argument, "--slack: is for chares; add --pes, or leave it out");
+  if (options.rules.slack > 0 && options.repeat > 1)
+    tess::fail(tess::ErrorCode::bad_argument,
+               "--repeat: with --slack only the first of equal collisions searches; leave one out");
   const bool speaks = setup.machine->process().value == 0;
   if (stability && speaks && !collide_scene::print_stability()) return 1;
   if (options.inputs.empty()) {

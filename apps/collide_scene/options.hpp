@@ -13,6 +13,7 @@ struct Rules {
   bool within_model = false;  ///< pairs within a model, too
   bool open = false;          ///< objects that only touch are no pair
   double voxel_size = 0;      ///< 0: chosen by the library
+  double slack = 0;           ///< on chares; 0: each step searches
 };
 
 struct Options {

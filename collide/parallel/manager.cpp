@@ -21,6 +21,13 @@ void Manager::prepare(std::uint64_t step, std::size_t n_sampled, const Callback<
   round(step).delivery = std::move(pending_);
 }
 
+Summary Manager::take(std::uint64_t step, ObjectList objects, std::size_t n_sampled) {
+  const std::shared_ptr<Delivery> delivery = pool_.take();
+  delivery->objects = std::move(objects);
+  round(step).delivery = delivery;
+  return {delivery->objects, pe().value, n_sampled};
+}
+
 template <auto F>
 auto Manager::sender(std::uint64_t step) {
   return [this, step](std::int32_t to, auto&& bundle) {

@@ -40,6 +40,8 @@ struct CollisionStatistics {
   std::uint64_t n_entries = 0;   ///< (object, voxel) pairs that were sent
   std::uint64_t n_left_out = 0;  ///< and that were not
   std::uint64_t n_pieces = 0;    ///< of long thin objects; 0: objects are boxes, without capsules
+  std::uint64_t n_kept = 0;  ///< pairs of larger boxes that were tested (ColliderOptions::slack)
+  bool searched = true;      ///< if not, these pairs are of a collision before, and all else is 0
 
   friend CollisionStatistics operator+(const CollisionStatistics& a, const CollisionStatistics& b) {
     return {std::max(a.voxel_size, b.voxel_size),
@@ -47,7 +49,9 @@ struct CollisionStatistics {
             a.n_voxels + b.n_voxels,
             a.n_entries + b.n_entries,
             a.n_left_out + b.n_left_out,
-            a.n_pieces + b.n_pieces};
+            a.n_pieces + b.n_pieces,
+            a.n_kept + b.n_kept,
+            a.searched || b.searched};
   }
 };
 
@@ -82,6 +86,8 @@ class Manager : public Group<Manager> {
 
   /// The summary has so many boxes of this PE.
   void prepare(std::uint64_t step, std::size_t n_sampled, const Callback<Summary>& target);
+  /// The same for objects that come from another place than submit().
+  [[nodiscard]] Summary take(std::uint64_t step, ObjectList objects, std::size_t n_sampled);
   /// Without a plan: the objects are dropped.
   void begin(std::uint64_t step, const Plan& plan, const Report& report);
   void receive_records(std::uint64_t step, const Bundle<VoxelRecord>& bundle);
@@ -97,6 +103,12 @@ class Manager : public Group<Manager> {
   /// Frees the memory that is kept for the next collision.
   void shrink() { pool_.shrink(); }
 
+  /// Pairs of larger boxes that this PE tested, after a search for them or alone.
+  void note_kept(std::uint64_t n, bool after_search) {
+    if (!after_search) last_ = {};
+    last_.n_kept = n;
+    last_.searched = after_search;
+  }
   /// What this PE did in the last collision.
   [[nodiscard]] const CollisionStatistics& last() const { return last_; }
   void report_last(const Callback<CollisionStatistics>& target) { contribute(sum, last_, target); }

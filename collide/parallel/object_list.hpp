@@ -53,6 +53,16 @@ class ObjectList {
     local_.reserve(n);
   }
   void clear();
+  /// Sets each box to change(box). bounds() and has_octave() remain those of the boxes before.
+  template <class Change>
+  void change_boxes(const Change& change) {
+    for (std::size_t i = 0; i < boxes_.size(); ++i) boxes_.data()[i] = change(boxes_.data()[i]);
+  }
+  /// True if both have the same objects at the same positions, whatever their boxes.
+  [[nodiscard]] bool has_objects_of(const ObjectList& other) const {
+    return size() == other.size() && sources_ == other.sources_ && source_of_ == other.source_of_ &&
+           local_ == other.local_;
+  }
 
   [[nodiscard]] std::uint32_t size() const noexcept {
     return static_cast<std::uint32_t>(boxes_.size());

@@ -59,6 +59,22 @@ for arguments in "planes:8192 --triangles --move drift:0.3 --steps 3" "boxes:200
   same "${mpirun[@]}" -n 2 "$scene" "${what[@]}" --pes 1
   same "${mpirun[@]}" -n 2 "$scene" "${what[@]}" --pes 2
 done
+# Kept pairs: the same answer, and one search for steps that move little.
+for arguments in "planes:8192 --triangles --move drift:0.01 --steps 5" "crowd:4096 --self --move turn:0.01 --steps 5"; do
+  read -ra what <<<"$arguments"
+  "$scene" "${what[@]}" --json "$scratch/now.json" >"$scratch/out.txt" || fail "$arguments"
+  want=$(value_of result_hash)
+  for machine in "--pes 1" "--pes 3" "--sim pes=5,seed=3,migrate=0"; do
+    read -ra on <<<"$machine"
+    for slack in 0.02 1e-9; do same "$scene" "${what[@]}" "${on[@]}" --slack $slack; done
+    [[ $(value_of searches) == 5 ]]
+    check "$arguments $machine: each step searches with a tiny slack" $?
+    same "$scene" "${what[@]}" "${on[@]}" --slack 0.1
+    [[ $(value_of searches) == 1 ]]
+    check "$arguments $machine: one step searches with a slack of a tenth" $?
+  done
+  same "${mpirun[@]}" -n 2 "$scene" "${what[@]}" --slack 0.1
+done
 # The files of --out are the same, too.
 "$scene" planes:2048 --triangles --out "$scratch/serial" >"$scratch/out.txt"
 "$scene" planes:2048 --triangles --out "$scratch/chares" --pes 3 >"$scratch/out.txt"
@@ -91,6 +107,8 @@ explains 'runtime *left out' boxes:64
 explains 'runtime *used' boxes:64 --pes 2
 explains 'models *left out' boxes:64
 explains 'one model has no pairs' wave:64
+explains 'slack *left out' boxes:64
+explains 'slack *0.25 .*kept' boxes:64 --pes 1 --slack 0.25
 explains 'voxel size *2.5 ' wave:64 --voxel-size 2.5
 
 # refuses WORD COMMAND…: exit code 2, one line with WORD on standard error, nothing on standard output, no file.
@@ -131,6 +149,9 @@ refuses '--voxel-size' "$scene" planes:64 --voxel-size 0
 refuses 'voxel size 1e-09' "$scene" planes:64 --voxel-size 1e-9
 refuses '--steps' "$scene" planes:64 --steps 0
 refuses '--serial' "$scene" planes:64 --serial --pes 2
+refuses '--slack: is for chares' "$scene" planes:64 --slack 1
+refuses '--slack' "$scene" planes:64 --pes 2 --slack -1
+refuses '--repeat: with --slack' "$scene" planes:64 --pes 2 --slack 1 --repeat 2
 refuses '--nonsense' "$scene" planes:64 --nonsense
 refuses '--out' "$scene" planes:64 --out "$scratch/empty.obj/x"
 refuses 'missing.obj' "${mpirun[@]}" -n 2 "$scene" "$scratch/missing.obj" --pes 1

@@ -336,6 +336,10 @@ Problem problem_of(std::uint64_t seed) {
                    0,
                    seed % 5 < 2 ? static_cast<std::int32_t>(seed % 9) : 0};
   problem.options.piece_length = std::array{0.0, 0.01, 0.1, 0.5, 2.0, inf}[seed / 2 % 6];
+  if (seed / 4 % 3 == 2) {
+    problem.options.slack = std::array{1e-3, 0.2, 3.0}[seed / 12 % 3];
+    problem.scene.n_with_capsules = 0;
+  }
   const double size = std::array{0.25, 0.5, 0.7, 1.3, 10.0, 1e-3}[seed % 6];
   problem.options.origin = {seed % 4 == 0 ? 0 : 0.1, 0, -0.3};
   if (seed % 3 == 0) {  // chosen; the scene has a few large boxes

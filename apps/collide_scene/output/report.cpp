@@ -1,5 +1,6 @@
 #include "apps/collide_scene/output/report.hpp"
 
+#include <algorithm>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -33,6 +34,13 @@ std::string pairs_in_words(const Report& report) {
                                           : "between models");
 }
 
+std::string slack_in_words(const RunResult& result) {
+  const bool keeps = std::ranges::any_of(result.steps, [](const auto& s) { return s.n_kept != 0; });
+  return fmt::format("{} of {} steps searched{}", result.n_searched(), result.steps.size(),
+                     keeps ? "; the others tested pairs that were kept"
+                           : "; no pair was kept: there is none, or they are too many");
+}
+
 }  // namespace
 
 std::string explanation(const Report& report) {
@@ -47,9 +55,13 @@ std::string explanation(const Report& report) {
                       : report.n_triangles > 0
                           ? "left out of the run (--triangles); made once after it, untimed"
                           : "left out: the objects are boxes");
-  line("capsules", rules.triangles ? "used if most triangles are long and thin: pairs whose "
-                                     "capsules are apart are not tested"
-                                   : "left out: boxes that overlap are pairs");
+  line("slack", rules.slack > 0
+                    ? fmt::format("{} (--slack): pairs of larger boxes are kept", rules.slack)
+                    : "left out: each step searches, and no pair is kept");
+  line("capsules", rules.slack > 0   ? "left out: kept pairs are of boxes"
+                   : rules.triangles ? "used if most triangles are long and thin: pairs whose "
+                                       "capsules are apart are not tested"
+                                     : "left out: boxes that overlap are pairs");
   line("models",
        report.n_models == 0
            ? "left out: every pair counts"
@@ -87,6 +99,7 @@ std::string table(const Report& report) {
                    or_unknown(grid.entries), or_unknown(grid.left_out)));
   if (grid.pieces.value_or(0) != 0)
     line("", fmt::format("{} pieces of long thin triangles", *grid.pieces));
+  if (report.options.rules.slack > 0) line("slack", slack_in_words(result));
   out += fmt::format("  {:>6} {:>12} {:>12} {:>12} {:>12}\n", "step", "candidates", "pairs", "ms",
                      "ns/object");
   constexpr std::size_t most_rows = 20;
@@ -138,6 +151,8 @@ std::string json(const Report& report) {
   set("left_out", result.grid.left_out);
   set("pieces", result.grid.pieces);
   set("grid_bytes", result.grid.bytes);
+  out["slack"] = report.options.rules.slack;
+  out["searches"] = result.n_searched();
   out["seconds_per_step"] = result.seconds_per_step();
   out["ns_per_object"] = ns_per_object(report);
   out["peak_memory_bytes"] = result.peak_memory_bytes;
@@ -150,6 +165,8 @@ std::string json(const Report& report) {
     out["rows"].push_back({{"step", i},
                            {"pairs", result.steps[i].answer.n_pairs},
                            {"candidates", result.steps[i].answer.n_candidates},
+                           {"searched", result.steps[i].searched},
+                           {"kept", result.steps[i].n_kept},
                            {"seconds", result.steps[i].seconds}});
   // The name of a file may have any bytes; JSON holds only UTF-8.
   return out.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";

@@ -26,7 +26,8 @@ void Client::submit(const Collider& collider) {
   for (const Triangle& triangle : piece_.triangles) boxes_.push_back(box_of(triangle));
   // Without exact tests the pairs of boxes are the answer.
   std::vector<Capsule> capsules;
-  if (piece_.exact) capsules = thin_capsules_of(std::span<const Triangle>(piece_.triangles));
+  if (piece_.exact && collider.options.slack == 0)
+    capsules = thin_capsules_of(std::span<const Triangle>(piece_.triangles));
   const std::vector<std::uint32_t>& models = piece_.models;
   // One list per run of a model.
   for (std::size_t begin = 0, end = 0; begin < boxes_.size(); begin = end) {

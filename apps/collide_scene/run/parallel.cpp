@@ -26,8 +26,12 @@ tess::Task ParallelCollisions::begin() {
       rules_.open ? Touching::does_not_count : Touching::counts,
       scene_.models.empty() || rules_.within_model ? WithinModel::test : WithinModel::skip};
   const double size = rules_.voxel_size;  // zero: chosen
-  collider_ = make_collider({.size = {size, size, size}, .rules = pair_rules});
-  co_await tess::epoch([&] { clients_ = tess::create<Client>(tess::range(tess::n_pes())); });
+  const ColliderOptions options{
+      .size = {size, size, size}, .rules = pair_rules, .slack = rules_.slack};
+  co_await tess::epoch([&] {
+    collider_ = make_collider(options);
+    clients_ = tess::create<Client>(tess::range(tess::n_pes()));
+  });
 }
 
 tess::Task ParallelCollisions::step(int step, int repeat, StepResult& result,
@@ -57,7 +61,10 @@ tess::Task ParallelCollisions::step(int step, int repeat, StepResult& result,
     result.seconds = run == 0 ? seconds : std::min(result.seconds, seconds);
     tess::Future<CollisionStatistics> done;
     report_statistics(collider_, done.callback());
-    last_ = co_await done;
+    const CollisionStatistics statistics = co_await done;
+    result.n_kept = statistics.n_kept;
+    result.searched = statistics.searched;
+    if (result.searched) last_ = statistics;
   }
   tess::Future<Answer> answer;
   clients_.broadcast<&Client::give_answer>(answer.callback());

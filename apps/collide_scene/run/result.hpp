@@ -52,11 +52,13 @@ struct GridReport {
 struct StepResult {
   Answer answer;
   double seconds = 0;
+  std::uint64_t n_kept = 0;  ///< pairs of larger boxes that were tested
+  bool searched = true;      ///< if not, these pairs are of a step before
 };
 
 struct RunResult {
   std::vector<StepResult> steps;
-  GridReport grid;                      ///< of the last step
+  GridReport grid;                      ///< of the last step that searched
   std::vector<ScenePair> pairs;         ///< of the last step, sorted, if they were asked for
   std::uint64_t peak_memory_bytes = 0;  ///< sum over processes
 
@@ -64,6 +66,10 @@ struct RunResult {
     Answer sum;
     for (const StepResult& step : steps) sum += step.answer;
     return sum;
+  }
+  [[nodiscard]] std::size_t n_searched() const {
+    return static_cast<std::size_t>(
+        std::count_if(steps.begin(), steps.end(), [](const StepResult& s) { return s.searched; }));
   }
   [[nodiscard]] double seconds_per_step() const {
     double sum = 0;

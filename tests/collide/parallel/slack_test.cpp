@@ -1,0 +1,397 @@
+// Colliders with a slack: boxes that move little, far, or not at all, whose owners migrate and change
+// what they submit, against all pairs in each step; when pairs are kept; and which input is refused.
+#include "collide/collider.hpp"
+#include "collide/parallel/kept_pairs.hpp"
+#include "runtime/core/error.hpp"
+#include "runtime/core/hash.hpp"
+#include "runtime/machine/threads.hpp"
+#include "runtime/runtime.hpp"
+#include "runtime/testing.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/n_seeds.hpp"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace {
+
+using namespace tess;
+using namespace tess::collide;
+
+constexpr double slack = 0.05;
+
+struct Moving {
+  std::uint64_t seed = 0;
+  std::int32_t n_clients = 3;
+  std::uint32_t n_boxes = 30;  ///< per client
+  std::uint32_t n_models = 2;
+  double drift = 0.01;      ///< how far a box moves in a step, at most, on each axis
+  std::int32_t jump = -1;   ///< in this step one box is elsewhere
+  std::int32_t birth = -1;  ///< from this step on a client has one more box
+  bool identical = false;   ///< all boxes are
+  bool with_capsules = false;
+  double scale = 1;
+  PairRules rules{};
+  std::optional<ModelId> only{};
+
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(seed, n_clients, n_boxes, n_models, drift, jump, birth, identical, with_capsules, scale,
+       rules, only);
+  }
+};
+
+/// The boxes of a client in a step. On a lattice in half of the scenes, so that boxes touch.
+std::vector<Item> items_of(const Moving& scene, std::int32_t client, std::int32_t step) {
+  const bool has_last = scene.birth >= 0 && step >= scene.birth && client == 0;
+  const std::uint32_t n = scene.n_boxes + (has_last ? 1U : 0U);
+  std::vector<Item> items(n);
+  for (std::uint32_t i = 0; i < n; ++i) {
+    Random random(mix(scene.seed ^ mix(static_cast<std::uint64_t>(client) << 32 | i)));
+    items[i].id = {owner_of(Index1{client}), LocalId{i},
+                   static_cast<ModelId>(random.below(scene.n_models))};
+    const bool jumps = step == scene.jump && client == 0 && i == 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      double lo = 3 * random.unit() + (jumps ? 0.7 : 0), extent = random.unit();
+      if (scene.seed % 2 == 0) lo = std::round(8 * lo) / 8, extent = std::round(8 * extent) / 8;
+      if (scene.identical) lo = 0, extent = 1;
+      lo += scene.drift * (2 * random.unit() - 1) * (step % 4);
+      items[i].box.lo[k] = scene.scale * lo;
+      items[i].box.hi[k] = scene.scale * (lo + extent);
+    }
+  }
+  return items;
+}
+
+/// One hit, as an owner received it.
+using Received = std::array<std::uint64_t, 4>;
+
+Received received(const ObjectId& mine, const ObjectId& theirs) {
+  return {static_cast<std::uint64_t>(mine.owner), static_cast<std::uint64_t>(theirs.owner),
+          static_cast<std::uint64_t>(mine.local), static_cast<std::uint64_t>(theirs.local)};
+}
+
+/// In a pair with one owner the order has no meaning.
+std::vector<Received> in_order(std::vector<Received> all) {
+  for (auto& [owner, other, mine, theirs] : all)
+    if (owner == other && theirs < mine) std::swap(mine, theirs);
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
+std::vector<Received> all_pairs(const Moving& scene, std::int32_t step) {
+  std::vector<Item> all;
+  for (std::int32_t c = 0; c < scene.n_clients; ++c)
+    for (const Item& item : items_of(scene, c, step)) all.push_back(item);
+  std::vector<Received> out;
+  for (std::size_t i = 0; i < all.size(); ++i)
+    for (std::size_t j = i + 1; j < all.size(); ++j) {
+      const ObjectId &a = all[i].id, &b = all[j].id;
+      if (scene.rules.within_model == WithinModel::skip && a.model == b.model) continue;
+      if (!overlap(all[i].box, all[j].box, scene.rules.touching)) continue;
+      if (!scene.only || a.model == *scene.only) out.push_back(received(a, b));
+      if (scene.only ? b.model == *scene.only : a.owner != b.owner) out.push_back(received(b, a));
+    }
+  return in_order(std::move(out));
+}
+
+class Mover : public Chare<Mover> {
+ public:
+  explicit Mover(const Moving& scene) : scene_(scene) {}
+
+  void submit(const Collider& collider, std::int32_t step) {
+    const std::vector<Item> items = items_of(scene_, index().x, step);
+    std::vector<Capsule> capsules;
+    if (scene_.with_capsules) capsules.resize(items.size(), unknown_capsule);
+    try {
+      collider.submit(items, capsules);
+    } catch (const Error& error) {
+      refused_ = error.what();
+    }
+  }
+  void receive(const Hits& hits) {
+    TESS_CHECK(hits.owner == owner_of(index()), "hits of another owner");
+    for (const LocalPair& pair : hits.pairs)
+      received_.push_back(received({hits.owner, pair.mine, {}}, {hits.other, pair.theirs, {}}));
+  }
+  /// Of the steps since the last call.
+  void give(Callback<std::vector<Received>> target) {
+    contribute(concatenate, std::exchange(received_, {}), std::move(target));
+  }
+  void give_refused(Callback<std::string> target) { contribute(max, refused_, std::move(target)); }
+  Task collide(Collider collider, Report report, Callback<void> taken) {
+    co_await run_collision(collider, report, taken);
+  }
+  /// The boxes of a step are submitted as soon as those of the one before are taken.
+  Task collide_in_a_row(Collider collider, Report report, std::int32_t n_steps) {
+    for (std::int32_t step = 0; step < n_steps; ++step) {
+      co_await epoch([&] { array().broadcast<&Mover::submit>(collider, step); });
+      Future<void> taken;
+      array()[{step % scene_.n_clients}].send<&Mover::collide>(collider, report, taken.callback());
+      co_await taken;
+    }
+  }
+
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(scene_, received_, refused_);
+  }
+  Mover() = default;
+
+ private:
+  Moving scene_;
+  std::vector<Received> received_;
+  std::string refused_;
+};
+
+struct Outcome {
+  std::vector<std::vector<Received>> steps;
+  std::vector<CollisionStatistics> statistics;
+  std::string refused;
+  std::size_t n_left = 0;
+};
+
+struct Movers {
+  Collider collider;
+  ArrayProxy<Mover> clients;
+  Report report;
+};
+
+Task begin(const Moving& scene, const ColliderOptions& options, Movers& out) {
+  co_await epoch([&] {
+    out.collider = make_collider(options);
+    out.clients = create<Mover>(range(scene.n_clients), scene);
+  });
+  out.report = {report_to<&Mover::receive>(out.clients), scene.only};
+}
+
+Task give_all(const Movers& movers, Outcome& outcome) {
+  Future<std::vector<Received>> all;
+  movers.clients.broadcast<&Mover::give>(all.callback());
+  outcome.steps.push_back(in_order(co_await all));
+}
+
+Task end(const Movers& movers, Outcome& outcome) {
+  Future<std::string> refused;
+  movers.clients.broadcast<&Mover::give_refused>(refused.callback());
+  outcome.refused = co_await refused;
+  co_await epoch([&] {
+    movers.collider.destroy();
+    movers.clients.destroy();
+  });
+  outcome.n_left = current_pe().collections().size();
+}
+
+ColliderOptions with_slack(const Moving& scene) {
+  return {.rules = scene.rules, .slack = slack * scene.scale};
+}
+
+Task collide_steps(const Moving& scene, std::int32_t n_steps, Outcome& outcome) {
+  Movers movers;
+  co_await begin(scene, with_slack(scene), movers);
+  for (std::int32_t step = 0; step < n_steps; ++step) {
+    co_await epoch([&] { movers.clients.broadcast<&Mover::submit>(movers.collider, step); });
+    co_await run_collision(movers.collider, movers.report);
+    co_await give_all(movers, outcome);
+    Future<CollisionStatistics> statistics;
+    report_statistics(movers.collider, statistics.callback());
+    outcome.statistics.push_back(co_await statistics);
+  }
+  co_await end(movers, outcome);
+}
+
+Task collide_in_a_row(const Moving& scene, std::int32_t n_steps, Outcome& outcome) {
+  Movers movers;
+  co_await begin(scene, with_slack(scene), movers);
+  co_await epoch([&] {
+    movers.clients[{0}].send<&Mover::collide_in_a_row>(movers.collider, movers.report, n_steps);
+  });
+  co_await give_all(movers, outcome);
+  co_await end(movers, outcome);
+}
+
+Moving scene_of(std::uint64_t seed) {
+  Moving scene{.seed = seed,
+               .n_clients = static_cast<std::int32_t>(1 + seed % 6),
+               .n_boxes = static_cast<std::uint32_t>(10 + seed % 3 * 15),
+               .n_models = static_cast<std::uint32_t>(1 + seed % 3)};
+  scene.drift = std::array{0.0, 0.01, 0.016, 0.03, 0.3}[seed / 2 % 5];
+  scene.scale = std::array{1.0, 1e-200, 1e100, 1e3}[seed / 3 % 4];
+  if (seed % 5 == 3) scene.jump = 2;
+  if (seed % 5 == 4) scene.birth = 2;
+  scene.rules.touching = seed % 7 < 4 ? Touching::counts : Touching::does_not_count;
+  scene.rules.within_model =
+      scene.n_models == 1 || seed % 11 < 4 ? WithinModel::test : WithinModel::skip;
+  if (seed % 6 == 5) scene.only = ModelId{0};
+  return scene;
+}
+
+test::Machine machine_of(std::uint64_t seed) {
+  return {.pes = std::array{1, 2, 3, 4, 8, 20}[seed % 6],
+          .per_process = seed / 6 % 2 == 0 ? 1 : 0,
+          .seed = seed,
+          .migration = seed % 4 == 0 ? 0.1 : 0};
+}
+
+bool was_kept(const CollisionStatistics& statistics) {
+  return !statistics.searched;
+}
+
+}  // namespace
+
+TEST_CASE("with a slack each step reports the pairs of its boxes", "[collide][slack]") {
+  constexpr std::int32_t n_steps = 6;
+  std::size_t n_kept = 0, n_searched = 0;
+  test::for_seeds(1, 1 + test::n_seeds(300), [&](std::uint64_t seed) {
+    const Moving scene = scene_of(seed);
+    Outcome outcome;
+    machine_of(seed)
+        .run([&]() -> Task { return collide_steps(scene, n_steps, outcome); })
+        .require_success();
+    for (std::int32_t step = 0; step < n_steps; ++step) {
+      CAPTURE(step);
+      REQUIRE((outcome.steps.at(static_cast<std::size_t>(step)) == all_pairs(scene, step)));
+      ++(was_kept(outcome.statistics[static_cast<std::size_t>(step)]) ? n_kept : n_searched);
+    }
+    REQUIRE(outcome.n_left == 0);
+  });
+  REQUIRE(n_kept > n_searched / 4);
+  REQUIRE(n_searched > n_kept / 4);
+}
+
+TEST_CASE("collisions with a slack may overlap", "[collide][slack]") {
+  constexpr std::int32_t n_steps = 5;
+  test::for_seeds(1, 1 + test::n_seeds(150), [&](std::uint64_t seed) {
+    const Moving scene = scene_of(seed);
+    Outcome outcome;
+    machine_of(seed)
+        .run([&]() -> Task { return collide_in_a_row(scene, n_steps, outcome); })
+        .require_success();
+    std::vector<Received> expected;
+    for (std::int32_t step = 0; step < n_steps; ++step)
+      for (const Received& one : all_pairs(scene, step)) expected.push_back(one);
+    REQUIRE((outcome.steps.at(0) == in_order(std::move(expected))));
+  });
+}
+
+TEST_CASE(
+    "pairs are kept while each box stays within its larger one, and searched again if one does not",
+    "[collide][slack]") {
+  for (const bool separate : {false, true}) {
+    const test::Machine machine{
+        .pes = 4, .per_process = separate ? 1 : 4, .reordering = 0, .migration = 0};
+    Moving scene{.seed = 1, .n_clients = 4, .drift = slack / 3 * 0.99};
+    const auto kept_in = [&](std::int32_t n_steps) {
+      Outcome outcome;
+      machine.run([&]() -> Task { return collide_steps(scene, n_steps, outcome); })
+          .require_success();
+      std::string kept;
+      for (const CollisionStatistics& s : outcome.statistics) kept += was_kept(s) ? 'k' : 's';
+      return kept;
+    };
+    CHECK(kept_in(5) == "skkkk");
+    scene.jump = 2;  // and back
+    CHECK(kept_in(5) == "skssk");
+    scene.jump = -1, scene.birth = 3;
+    CHECK(kept_in(5) == "skksk");
+    scene.birth = -1, scene.drift = slack;  // times 0, 1, 2, 3, 0
+    CHECK(kept_in(5) == "sksks");
+  }
+}
+
+TEST_CASE("on threads pairs are kept", "[collide][slack]") {
+  const Moving scene{.seed = 5, .n_clients = 4, .n_boxes = 100, .drift = 0.01};
+  Outcome outcome;
+  Setup setup{make_threads_machine(2), {}};
+  REQUIRE(run(setup, [&]() -> Task { return collide_steps(scene, 6, outcome); }) == 0);
+  for (std::int32_t step = 0; step < 6; ++step)
+    REQUIRE((outcome.steps.at(static_cast<std::size_t>(step)) == all_pairs(scene, step)));
+  REQUIRE(std::count_if(outcome.statistics.begin(), outcome.statistics.end(), &was_kept) >= 1);
+}
+
+TEST_CASE("more pairs than are kept are found without keeping them", "[collide][slack]") {
+  const Moving scene{.n_clients = 3,
+                     .n_boxes = 300,
+                     .n_models = 1,
+                     .drift = 0,
+                     .identical = true,
+                     .rules = {.within_model = WithinModel::test}};
+  Outcome outcome;
+  const test::Machine machine{.pes = 3, .seed = 3, .migration = 0};
+  machine.run([&]() -> Task { return collide_steps(scene, 2, outcome); }).require_success();
+  for (std::size_t step = 0; step < 2; ++step) {
+    REQUIRE((outcome.steps.at(step) == all_pairs(scene, 0)));
+    REQUIRE(outcome.statistics[step].n_kept == 0);
+    REQUIRE(outcome.statistics[step].searched);
+    REQUIRE(outcome.statistics[step].n_voxels > 0);
+  }
+}
+
+TEST_CASE("colliders with a slack refuse capsules and coordinates without a cell, and go on",
+          "[collide][slack]") {
+  const test::Machine machine{.pes = 2, .seed = 3};
+  Moving scene{.with_capsules = true};
+  Outcome outcome;
+  machine.run([&]() -> Task { return collide_steps(scene, 1, outcome); }).require_success();
+  REQUIRE_THAT(outcome.refused,
+               Catch::Contains("30 capsules were submitted to a collider with a slack"));
+  REQUIRE(outcome.steps.at(0).empty());
+
+  scene.with_capsules = false;
+  std::string error;
+  Outcome after;
+  const auto refused_and_again = [&]() -> Task {
+    Movers movers;
+    ColliderOptions options = with_slack(scene);
+    options.size = {1e-10, 1e-10, 1e-10};
+    co_await begin(scene, options, movers);
+    for (int i = 0; i < 2; ++i) {
+      error.clear();
+      co_await epoch([&] { movers.clients.broadcast<&Mover::submit>(movers.collider, 0); });
+      try {
+        co_await run_collision(movers.collider, movers.report);
+      } catch (const Error& caught) {
+        error = caught.what();
+      }
+    }
+    co_await run_collision(movers.collider, movers.report);  // of nothing
+    co_await give_all(movers, after);
+    co_await end(movers, after);
+  };
+  machine.run(refused_and_again).require_success();
+  REQUIRE_THAT(error, Catch::Contains("has no 32-bit cell at voxel size 1e-10"));
+  REQUIRE(after.steps.at(0).empty());
+}
+
+TEST_CASE("a slack is a length", "[collide][slack]") {
+  for (const double wrong :
+       {-1.0, std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()}) {
+    std::string error;
+    const auto make = [&]() -> Task {
+      try {
+        static_cast<void>(make_collider({.slack = wrong}));
+      } catch (const Error& caught) {
+        error = caught.what();
+      }
+      co_return;
+    };
+    test::Machine{.pes = 1}.run(make).require_success();
+    REQUIRE_THAT(error, Catch::Contains("give a positive length, or 0 to search"));
+  }
+}
+
+TEST_CASE("a larger box contains the box, whatever is rounded", "[collide][slack]") {
+  constexpr double most = std::numeric_limits<double>::max();
+  for (const double at : {0.0, 1.0, -1e12, 1e300, most, -most})
+    for (const double by : {0.0, 1e-300, 1e-9, 1.0, 1e300, most}) {
+      const Aabb box{{at, at, at}, {at, at, at}}, larger = larger_box(box, by);
+      REQUIRE(is_valid(larger));
+      REQUIRE(larger.lo[0] <= at);
+      REQUIRE(at <= larger.hi[2]);
+      REQUIRE(merged(larger, box) == larger);
+    }
+}
