@@ -24,8 +24,10 @@ struct Problem {
   Look look;
   std::int32_t n_clients = 1;
   std::optional<ModelId> only;
-  std::array<Objects, 2> rounds;
-  std::array<PairList, 2> found;  ///< (mine, theirs), by the owner that received the pair
+  /// The first scene again: with a slack, its pairs are kept.
+  static constexpr std::array<std::size_t, 3> scene_of_round{0, 0, 1};
+  std::array<Objects, 2> scenes;
+  std::array<PairList, 3> found;  ///< (mine, theirs), by the owner that received the pair
   bool is_refused = false;
 };
 Problem* problem = nullptr;
@@ -33,14 +35,15 @@ Problem* problem = nullptr;
 /// Owns every n-th object. Its local ids are the positions in the scene.
 class Client : public tess::Chare<Client, tess::Index1> {
  public:
-  void submit(const Collider& collider, int round) {
+  void submit(const Collider& collider, std::size_t round) {
     round_ = round;
-    const Objects& scene = problem->rounds[static_cast<std::size_t>(round)];
+    const Objects& scene = scene_of(round);
     std::vector<Item> items;
     std::vector<Capsule> capsules;
     const bool with_capsules =
+        problem->look.slack == 0 &&
         tess::unit(tess::mix(problem->look.seed + 7 * static_cast<std::uint64_t>(index().x))) <
-        problem->look.with_capsules;
+            problem->look.with_capsules;
     for (std::size_t i = 0; i < scene.boxes.size(); ++i) {
       if (owner(i) != index().x) continue;
       items.push_back(
@@ -53,12 +56,10 @@ class Client : public tess::Chare<Client, tess::Index1> {
   /// The exact test is the receiver's.
   void receive(const Hits& hits) {
     TESS_CHECK(hits.owner == owner_of(index()), "hits of another owner");
-    const auto round = static_cast<std::size_t>(round_);
     for (const LocalPair& pair : hits.pairs) {
       const auto mine = static_cast<std::uint32_t>(pair.mine),
                  theirs = static_cast<std::uint32_t>(pair.theirs);
-      if (problem->rounds[round].are_pair(mine, theirs))
-        problem->found[round].push_back({mine, theirs});
+      if (scene_of(round_).are_pair(mine, theirs)) problem->found[round_].push_back({mine, theirs});
     }
   }
   [[nodiscard]] static std::int32_t owner(std::size_t object) {
@@ -70,7 +71,11 @@ class Client : public tess::Chare<Client, tess::Index1> {
   }
 
  private:
-  int round_ = 0;
+  static const Objects& scene_of(std::size_t round) {
+    return problem->scenes[Problem::scene_of_round[round]];
+  }
+
+  std::size_t round_ = 0;
 };
 
 tess::Task collide_rounds() {
@@ -79,7 +84,8 @@ tess::Task collide_rounds() {
   const ColliderOptions options{
       .size = {size, size, size},
       .rules = {look.touching, look.within_model ? WithinModel::test : WithinModel::skip},
-      .piece_length = look.piece_length};
+      .piece_length = look.piece_length,
+      .slack = look.slack};
   Collider collider;
   tess::ArrayProxy<Client> clients;
   co_await tess::epoch([&] {
@@ -87,7 +93,7 @@ tess::Task collide_rounds() {
     clients = tess::create<Client>(tess::range(problem->n_clients));
   });
   const Report report{report_to<&Client::receive>(clients), problem->only};
-  for (int round = 0; round < 2; ++round) {
+  for (std::size_t round = look.slack > 0 ? 0 : 1; round < 3; ++round) {
     co_await tess::epoch([&] { clients.broadcast<&Client::submit>(collider, round); });
     try {
       co_await run_collision(collider, report);
@@ -159,24 +165,26 @@ Outcome try_chares(const Look& look, std::int32_t n_pes) {
   if (!is_in_chares(look.shape)) here.look.shape = Shape::box;
   here.n_clients = static_cast<std::int32_t>(1 + look.seed % 7);
   if (look.seed % 5 == 0) here.only = ModelId{0};
-  here.rounds[0] = objects_of(here.look);
+  here.scenes[0] = objects_of(here.look);
   Look moved = here.look;
   moved.seed ^= 0xaaaa;
-  here.rounds[1] = objects_of(moved);
+  here.scenes[1] = objects_of(moved);
   problem = &here;
 
   Outcome outcome;
   std::string name = "collide_fuzz",
-              machine = fmt::format("--sim=pes={},cost=100ns,migrate=0.05,seed={}{}", n_pes,
-                                    look.seed, look.seed % 2 == 0 ? ",per-process=1" : "");
+              machine = fmt::format("--sim=pes={},cost=100ns,migrate={},seed={}{}", n_pes,
+                                    look.slack > 0 ? 0 : 0.05, look.seed,
+                                    look.seed % 2 == 0 ? ",per-process=1" : "");
   std::array<char*, 3> argv{name.data(), machine.data(), nullptr};
   int argc = 2;
   tess::Setup setup = tess::take_options(argc, argv.data());
   const int code = tess::run(setup, [] { return collide_rounds(); });
   if (code != 0) outcome.failure = fmt::format("chares: exit code {}", code);
   if (here.is_refused) ++outcome.n_refused;
-  for (std::size_t round = 0; round < 2 && !here.is_refused; ++round)
-    compare(in_order(here.found[round]), in_order(expected(here.rounds[round], here)),
+  for (std::size_t round = look.slack > 0 ? 0 : 1; round < 3 && !here.is_refused; ++round)
+    compare(in_order(here.found[round]),
+            in_order(expected(here.scenes[Problem::scene_of_round[round]], here)),
             fmt::format("collision {} on {} PEs", round, n_pes), outcome);
   problem = nullptr;
   return outcome;

@@ -51,18 +51,19 @@ Look look_of(std::uint64_t seed) {
   const double length = one_of(
       random, std::array{0.0, 0.005, 0.02, 0.1, 0.5, std::numeric_limits<double>::infinity()});
   look.piece_length = length * look.scale;
+  look.slack = one_of(random, std::array{0.0, 0.0, 1e-4, 0.02, 0.3}) * look.scale;
   return look;
 }
 
 std::string describe(const Look& look) {
   return fmt::format(
       "{} {} {}, offset {:g}, scale {:g}, largest {:g} over {:g} decades, {} models{}, {}, voxel "
-      "size {:g}, {:g} of the clients with capsules, pieces {:g}",
+      "size {:g}, {:g} of the clients with capsules, pieces {:g}, slack {:g}",
       look.n, shape_names[static_cast<std::size_t>(look.shape)],
       place_names[static_cast<std::size_t>(look.place)], look.offset, look.scale, look.largest,
       look.decades, look.n_models, look.within_model ? " and pairs within" : "",
       look.touching == tess::collide::Touching::counts ? "closed" : "open", look.voxel_size,
-      look.with_capsules, look.piece_length);
+      look.with_capsules, look.piece_length, look.slack);
 }
 
 }  // namespace collide_fuzz

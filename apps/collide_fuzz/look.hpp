@@ -57,6 +57,7 @@ struct Look {
   /// On chares: part of the clients submit the capsules of objects that have some.
   double with_capsules = 0;
   double piece_length = 0;
+  double slack = 0;  ///< if there is one, no client submits capsules
 };
 
 /// The Look of a seed.
