@@ -1,5 +1,6 @@
 #include "collide/collider.hpp"
 
+#include "collide/parallel/manager.hpp"
 #include "collide/parallel/neighbours.hpp"
 #include "runtime/core/check.hpp"
 #include "runtime/core/error.hpp"

@@ -39,7 +39,8 @@
 // voxel.
 #pragma once
 
-#include "collide/parallel/manager.hpp"
+#include "collide/collider_options.hpp"
+#include "collide/objects.hpp"
 #include "collide/parallel/voxel.hpp"
 #include "collide/report.hpp"
 #include "runtime/runtime.hpp"
@@ -49,6 +50,7 @@
 
 namespace tess::collide {
 
+class Manager;
 class Neighbours;
 
 /// A handle to the voxels and Managers of a collider. It can be copied and sent.

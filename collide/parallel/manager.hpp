@@ -12,7 +12,9 @@
 // The reports of Managers to homes, and the answers, are exchanged in a few messages (exchange.hpp).
 #pragma once
 
+#include "collide/collider_options.hpp"
 #include "collide/hit.hpp"
+#include "collide/objects.hpp"
 #include "collide/parallel/delivery_pool.hpp"
 #include "collide/parallel/exchange.hpp"
 #include "collide/parallel/part.hpp"
@@ -31,36 +33,6 @@
 #include <vector>
 
 namespace tess::collide {
-
-/// What the last collision did, on all PEs.
-struct CollisionStatistics {
-  double voxel_size = 0;  ///< the shortest edge, on the finest level; 0 if nothing was done
-  std::uint64_t n_levels = 0;
-  std::uint64_t n_voxels = 0;    ///< that were searched
-  std::uint64_t n_entries = 0;   ///< (object, voxel) pairs that were sent
-  std::uint64_t n_left_out = 0;  ///< and that were not
-  std::uint64_t n_pieces = 0;    ///< of long thin objects; 0: objects are boxes, without capsules
-  std::uint64_t n_kept = 0;  ///< pairs of larger boxes that were tested (ColliderOptions::slack)
-  bool searched = true;      ///< if not, these pairs are of a collision before, and all else is 0
-
-  friend CollisionStatistics operator+(const CollisionStatistics& a, const CollisionStatistics& b) {
-    return {std::max(a.voxel_size, b.voxel_size),
-            std::max(a.n_levels, b.n_levels),
-            a.n_voxels + b.n_voxels,
-            a.n_entries + b.n_entries,
-            a.n_left_out + b.n_left_out,
-            a.n_pieces + b.n_pieces,
-            a.n_kept + b.n_kept,
-            a.searched || b.searched};
-  }
-};
-
-/// Objects of one owner and model, numbered from 0 on.
-struct Submission {
-  OwnerId owner{};
-  ModelId model{};
-  std::vector<Aabb> boxes{};
-};
 
 class Manager : public Group<Manager> {
  public:

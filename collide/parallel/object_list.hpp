@@ -5,6 +5,7 @@
 
 #include "collide/capsule.hpp"
 #include "collide/hit.hpp"
+#include "collide/objects.hpp"
 #include "collide/parallel/piece_table.hpp"
 #include "collide/search/entry.hpp"
 #include "collide/search/scratch.hpp"
@@ -20,17 +21,6 @@
 #include <vector>
 
 namespace tess::collide {
-
-/// Objects of one owner and model, numbered from `first` on. submit() copies the boxes and capsules:
-/// they must live until it returns.
-struct Objects {
-  OwnerId owner{};
-  ModelId model{};
-  std::span<const Aabb> boxes;
-  LocalId first{};
-  /// Of long thin objects, one per box, or none. Pairs whose capsules are certainly apart are no hits.
-  std::span<const Capsule> capsules{};
-};
 
 class ObjectList {
  public:

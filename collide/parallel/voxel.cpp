@@ -7,6 +7,9 @@
 
 namespace tess::collide {
 
+Voxel::Voxel() = default;
+Voxel::~Voxel() = default;
+
 void Voxel::add(Part part, std::uint32_t n_senders) {
   is_idle_ = false;
   const std::uint64_t step = part.delivery().plan.step;

@@ -4,8 +4,6 @@
 // costs nothing: it has no voxels.
 #pragma once
 
-#include "collide/hit.hpp"
-#include "collide/parallel/part.hpp"
 #include "runtime/runtime.hpp"
 
 #include <array>
@@ -15,8 +13,13 @@
 
 namespace tess::collide {
 
+class Part;
+
 class Voxel : public Chare<Voxel, Index4> {
  public:
+  Voxel();
+  ~Voxel() override;
+
   /// After retire(), objects may arrive before the ones that make the voxel again.
   static constexpr tess::DeadLetters dead_letters = tess::DeadLetters::wait;
 

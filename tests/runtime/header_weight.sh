@@ -4,7 +4,7 @@
 set -euo pipefail
 limits=(
   runtime/runtime.hpp 66200
-  collide/collider.hpp 75000
+  collide/collider.hpp 71600
   m2m/coupling.hpp 73600
 )
 if [[ $("$1" --version) != *'(Debian 12.'* ]]; then

@@ -1,6 +1,7 @@
 // Long thin objects on chares: what is divided, what is left out, and which input is refused.
 #include "collide/collider.hpp"
 #include "collide/pairs.hpp"
+#include "collide/parallel/object_list.hpp"
 #include "collide/search/thin_objects.hpp"
 #include "collide/triangle.hpp"
 #include "runtime/core/error.hpp"

@@ -1,0 +1,51 @@
+// How a collider searches, and what it did.
+#pragma once
+
+#include "collide/box.hpp"
+#include "collide/hit.hpp"
+#include "runtime/core/algorithm.hpp"
+
+#include <cstdint>
+
+namespace tess::collide {
+
+/// The voxels, and the pairs that are hits.
+struct ColliderOptions {
+  Point origin{0, 0, 0};
+  /// Of the smallest voxels. Zero: chosen in each collision by expected cost, with an origin.
+  Point size{0, 0, 0};
+  PairRules rules{};
+  /// Of objects with capsules. Infinite: they are whole. Zero: chosen in each collision by expected cost,
+  /// with the size of the voxels; whole if that is given.
+  double piece_length = 0;
+  /// A length, for objects that move little from a collision to the next. If positive, a collision also
+  /// finds pairs of boxes that are larger by it on each side, and keeps them. While the same objects are
+  /// submitted, each within its larger box, the collisions after it test these pairs alone. The hits are
+  /// the same. Objects have no capsules then.
+  double slack = 0;
+};
+
+/// What the last collision did, on all PEs.
+struct CollisionStatistics {
+  double voxel_size = 0;  ///< the shortest edge, on the finest level; 0 if nothing was done
+  std::uint64_t n_levels = 0;
+  std::uint64_t n_voxels = 0;    ///< that were searched
+  std::uint64_t n_entries = 0;   ///< (object, voxel) pairs that were sent
+  std::uint64_t n_left_out = 0;  ///< and that were not
+  std::uint64_t n_pieces = 0;    ///< of long thin objects; 0: objects are boxes, without capsules
+  std::uint64_t n_kept = 0;  ///< pairs of larger boxes that were tested (ColliderOptions::slack)
+  bool searched = true;      ///< if not, these pairs are of a collision before, and all else is 0
+
+  friend CollisionStatistics operator+(const CollisionStatistics& a, const CollisionStatistics& b) {
+    return {std::max(a.voxel_size, b.voxel_size),
+            std::max(a.n_levels, b.n_levels),
+            a.n_voxels + b.n_voxels,
+            a.n_entries + b.n_entries,
+            a.n_left_out + b.n_left_out,
+            a.n_pieces + b.n_pieces,
+            a.n_kept + b.n_kept,
+            a.searched || b.searched};
+  }
+};
+
+}  // namespace tess::collide
