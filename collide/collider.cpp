@@ -105,13 +105,25 @@ Task collide_taken(Collider collider, std::uint64_t step, Summary summary, Repor
   if (refused) std::rethrow_exception(refused);
 }
 
-/// Collides the objects of a collision of the Neighbours, with larger boxes or their own.
-Task search(Collider collider, std::uint64_t step, bool larger, Report report) {
+/// Collides the objects of a collision of the Neighbours as they are.
+Task search(Collider collider, std::uint64_t step, Report report) {
   const std::uint64_t own_step = remaining(collider).new_step();
   Future<Summary> known;
-  collider.neighbours.broadcast<&Neighbours::enlarge>(step, own_step, larger, n_sampled(collider),
+  collider.neighbours.broadcast<&Neighbours::enlarge>(step, own_step, false, n_sampled(collider),
                                                       known.callback());
   const Summary summary = co_await known;
+  co_await collide_taken(collider, own_step, summary, report);
+}
+
+/// The same with larger boxes. Sets `too_many`, and searches nothing, if these have by far too many pairs.
+Task search_larger(Collider collider, std::uint64_t step, Report report, bool& too_many) {
+  const std::uint64_t own_step = remaining(collider).new_step();
+  Future<Summary> known;
+  collider.neighbours.broadcast<&Neighbours::enlarge>(
+      step, own_step, true, n_sampled_per_pe(Point{0, 0, 0}, n_pes()), known.callback());
+  Summary summary = co_await known;
+  too_many = are_far_too_many(summary, collider.options.rules.touching, n_pes());
+  if (too_many) summary = {};  // nothing is searched
   co_await collide_taken(collider, own_step, summary, report);
 }
 
@@ -121,7 +133,7 @@ Task find_kept(Collider collider, std::uint64_t step, bool& too_many) {
       report_to_neighbours(collider.neighbours, step), {}, Receivers::one_owner};
   std::exception_ptr refused;
   try {
-    co_await search(collider, step, true, to_neighbours);
+    co_await search_larger(collider, step, to_neighbours, too_many);
   } catch (...) {
     refused = std::current_exception();
   }
@@ -130,6 +142,7 @@ Task find_kept(Collider collider, std::uint64_t step, bool& too_many) {
     co_await epoch(body);
     std::rethrow_exception(refused);
   }
+  if (too_many) co_return;
   Future<bool> counted;
   collider.neighbours.broadcast<&Neighbours::count>(step, counted.callback());
   too_many = co_await counted;
@@ -145,7 +158,7 @@ Task collide_with_slack(Collider collider, std::uint64_t step, Report report,
   bool as_they_are = must_search && collider.neighbours.local().keeps_none();
   if (must_search && !as_they_are) co_await find_kept(collider, step, as_they_are);
   if (as_they_are) {
-    co_await search(collider, step, false, report);
+    co_await search(collider, step, report);
     co_return;
   }
   const auto body = [&] { collider.neighbours.broadcast<&Neighbours::match>(step, report); };

@@ -1,11 +1,34 @@
 #include "collide/parallel/kept_pairs.hpp"
 
+#include "collide/pairs.hpp"
+
 #include <algorithm>
 #include <array>
 #include <limits>
 #include <utility>
 
 namespace tess::collide {
+namespace {
+
+/// A PE with so many objects keeps at most so many pairs.
+std::size_t most_kept(std::size_t n_objects) {
+  return 32 * n_objects + (std::size_t{1} << 16);
+}
+
+}  // namespace
+
+bool are_far_too_many(const Summary& larger, Touching touching, std::int32_t n_pes) {
+  constexpr double factor = 8;  // what a sample is certain of, and what is not too long
+  if (larger.sample.empty()) return false;
+  const double n = static_cast<double>(larger.n);
+  const double scale = n / static_cast<double>(larger.sample.size());
+  double n_pairs = 0;
+  for_each_pair(std::span<const Aabb>(larger.sample), {.touching = touching},
+                [&n_pairs](std::uint32_t /*a*/, std::uint32_t /*b*/) { ++n_pairs; });
+  const double most = static_cast<double>(most_kept(0)) * n_pes +
+                      static_cast<double>(most_kept(larger.n) - most_kept(0));
+  return n_pairs * scale * scale > factor * most;
+}
 
 Aabb larger_box(const Aabb& box, double slack) noexcept {
   constexpr double most = std::numeric_limits<double>::max();
@@ -32,10 +55,9 @@ ObjectList larger_objects(const ObjectList& objects, double slack, PeId pe) {
 }
 
 void KeptPairs::add(Hits&& found, std::size_t n_objects) {
-  constexpr std::size_t per_object = 32, besides = 1 << 16;
   if (too_many_) return;
   n_pairs_ += found.pairs.size();
-  if (n_pairs_ > per_object * n_objects + besides) {
+  if (n_pairs_ > most_kept(n_objects)) {
     too_many_ = true;
     with_.clear();
     return;

@@ -13,6 +13,7 @@
 
 #include "collide/parallel/hit_sorter.hpp"
 #include "collide/parallel/object_list.hpp"
+#include "collide/parallel/plan.hpp"
 #include "collide/report.hpp"
 
 #include <cstdint>
@@ -30,6 +31,10 @@ namespace tess::collide {
 /// The objects of this PE as the PE's own, numbered by their positions, with larger boxes: what is
 /// searched for pairs to keep.
 [[nodiscard]] ObjectList larger_objects(const ObjectList& objects, double slack, PeId pe);
+
+/// True if the sample of larger objects says that they have many times the pairs that are kept: these
+/// are not searched, which would take long.
+[[nodiscard]] bool are_far_too_many(const Summary& larger, Touching touching, std::int32_t n_pes);
 
 class KeptPairs {
  public:

@@ -2,6 +2,7 @@
 // what they submit, against all pairs in each step; when pairs are kept; and which input is refused.
 #include "collide/collider.hpp"
 #include "collide/parallel/kept_pairs.hpp"
+#include "collide/parallel/plan.hpp"
 #include "runtime/core/error.hpp"
 #include "runtime/core/hash.hpp"
 #include "runtime/machine/threads.hpp"
@@ -29,10 +30,12 @@ struct Moving {
   std::int32_t n_clients = 3;
   std::uint32_t n_boxes = 30;  ///< per client
   std::uint32_t n_models = 2;
-  double drift = 0.01;      ///< how far a box moves in a step, at most, on each axis
-  std::int32_t jump = -1;   ///< in this step one box is elsewhere
-  std::int32_t birth = -1;  ///< from this step on a client has one more box
-  bool identical = false;   ///< all boxes are
+  double drift = 0.01;              ///< how far a box moves in a step, at most, on each axis
+  std::int32_t jump = -1;           ///< in this step one box is elsewhere
+  std::int32_t birth = -1;          ///< from this step on a client has one more box
+  std::int32_t other_numbers = -1;  ///< from this step on, for the same boxes
+  std::int32_t other_models = -1;
+  bool identical = false;  ///< all boxes are
   bool with_capsules = false;
   double scale = 1;
   PairRules rules{};
@@ -40,8 +43,8 @@ struct Moving {
 
   template <class Ar>
   void serialize(Ar& ar) {
-    ar(seed, n_clients, n_boxes, n_models, drift, jump, birth, identical, with_capsules, scale,
-       rules, only);
+    ar(seed, n_clients, n_boxes, n_models, drift, jump, birth, other_numbers, other_models,
+       identical, with_capsules, scale, rules, only);
   }
 };
 
@@ -49,11 +52,14 @@ struct Moving {
 std::vector<Item> items_of(const Moving& scene, std::int32_t client, std::int32_t step) {
   const bool has_last = scene.birth >= 0 && step >= scene.birth && client == 0;
   const std::uint32_t n = scene.n_boxes + (has_last ? 1U : 0U);
+  const bool renumbered = scene.other_numbers >= 0 && step >= scene.other_numbers;
+  const std::uint64_t shift = scene.other_models >= 0 && step >= scene.other_models ? 1 : 0;
   std::vector<Item> items(n);
   for (std::uint32_t i = 0; i < n; ++i) {
     Random random(mix(scene.seed ^ mix(static_cast<std::uint64_t>(client) << 32 | i)));
-    items[i].id = {owner_of(Index1{client}), LocalId{i},
-                   static_cast<ModelId>(random.below(scene.n_models))};
+    items[i].id = {
+        owner_of(Index1{client}), LocalId{renumbered ? 100 + i : i},
+        static_cast<ModelId>((random.below(scene.n_models) + shift * i) % scene.n_models)};
     const bool jumps = step == scene.jump && client == 0 && i == 0;
     for (std::size_t k = 0; k < 3; ++k) {
       double lo = 3 * random.unit() + (jumps ? 0.7 : 0), extent = random.unit();
@@ -223,6 +229,8 @@ Moving scene_of(std::uint64_t seed) {
   scene.scale = std::array{1.0, 1e-200, 1e100, 1e3}[seed / 3 % 4];
   if (seed % 5 == 3) scene.jump = 2;
   if (seed % 5 == 4) scene.birth = 2;
+  if (seed % 7 == 1) scene.other_numbers = 1;
+  if (seed % 7 == 2) scene.other_models = 1;
   scene.rules.touching = seed % 7 < 4 ? Touching::counts : Touching::does_not_count;
   scene.rules.within_model =
       scene.n_models == 1 || seed % 11 < 4 ? WithinModel::test : WithinModel::skip;
@@ -298,7 +306,11 @@ TEST_CASE(
     CHECK(kept_in(5) == "skssk");
     scene.jump = -1, scene.birth = 3;
     CHECK(kept_in(5) == "skksk");
-    scene.birth = -1, scene.drift = slack;  // times 0, 1, 2, 3, 0
+    scene.birth = -1, scene.other_numbers = 2;
+    CHECK(kept_in(5) == "skskk");
+    scene.other_numbers = -1, scene.other_models = 3;
+    CHECK(kept_in(5) == "skksk");
+    scene.other_models = -1, scene.drift = slack;  // times 0, 1, 2, 3, 0
     CHECK(kept_in(5) == "sksks");
   }
 }
@@ -328,6 +340,40 @@ TEST_CASE("more pairs than are kept are found without keeping them", "[collide][
     REQUIRE(outcome.statistics[step].n_kept == 0);
     REQUIRE(outcome.statistics[step].searched);
     REQUIRE(outcome.statistics[step].n_voxels > 0);
+  }
+}
+
+TEST_CASE("larger boxes with by far too many pairs are not searched", "[collide][slack]") {
+  Summary larger;
+  larger.n = 1'000'000;
+  const auto sample = [&](double extent) {
+    larger.sample.clear();
+    Random random(3);
+    for (int i = 0; i < 4096; ++i) {
+      const Point lo{random.unit(), random.unit(), random.unit()};
+      larger.sample.push_back({lo, {lo[0] + extent, lo[1] + extent, lo[2] + extent}});
+    }
+  };
+  sample(0.02);  // of a box 64 others, within twice its extent on each axis
+  CHECK_FALSE(are_far_too_many(larger, Touching::counts, 4));
+  sample(0.1);  // 8 000
+  CHECK(are_far_too_many(larger, Touching::counts, 4));
+  CHECK_FALSE(are_far_too_many(Summary(), Touching::counts, 4));
+
+  // The pairs are those of a search without a slack, in this collision and in the next.
+  Moving scene{.n_clients = 1,
+               .n_boxes = 1800,
+               .n_models = 1,
+               .identical = true,
+               .rules = {.within_model = WithinModel::test}};
+  Outcome outcome;
+  test::Machine{.pes = 1}
+      .run([&]() -> Task { return collide_steps(scene, 2, outcome); })
+      .require_success();
+  constexpr std::size_t n_pairs = std::size_t{1800} * 1799 / 2;
+  for (const std::vector<Received>& step : outcome.steps) {
+    REQUIRE(step.size() == n_pairs);
+    REQUIRE(std::adjacent_find(step.begin(), step.end()) == step.end());
   }
 }
 
