@@ -109,6 +109,7 @@ bool KeptPairs::test(Progress& progress, const ObjectList& now, const Boxes& of_
                      Touching touching, const Report& report) const {
   // Their hits fit into the cache until their owners receive them.
   constexpr std::size_t most = 1 << 13;
+  constexpr std::size_t ahead = 16;  // pairs whose boxes are being loaded
   const auto at = with_.lower_bound(progress.pe);
   if (at == with_.end()) return false;
   const auto& [pe, with] = *at;
@@ -127,9 +128,12 @@ bool KeptPairs::test(Progress& progress, const ObjectList& now, const Boxes& of_
   for (; progress.n_lists < with.lists.size() && n_here < most; ++progress.n_lists) {
     const std::vector<LocalPair>& pairs = with.lists[progress.n_lists];
     n_here += pairs.size();
-    for (const LocalPair& pair : pairs) {
-      mine[n] = static_cast<std::uint32_t>(pair.mine);
-      theirs[n] = static_cast<std::uint32_t>(pair.theirs);
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      const LocalPair& later = pairs[std::min(i + ahead, pairs.size() - 1)];
+      __builtin_prefetch(&a[static_cast<std::uint32_t>(later.mine)]);
+      __builtin_prefetch(&b[static_cast<std::uint32_t>(later.theirs)]);
+      mine[n] = static_cast<std::uint32_t>(pairs[i].mine);
+      theirs[n] = static_cast<std::uint32_t>(pairs[i].theirs);
       n += overlap(a[mine[n]], b[theirs[n]], touching) ? 1U : 0U;
       if (n == mine.size()) sort();
     }
