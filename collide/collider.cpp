@@ -115,8 +115,9 @@ Task search(Collider collider, std::uint64_t step, Report report) {
   co_await collide_taken(collider, own_step, summary, report);
 }
 
-/// The same with larger boxes. Sets `too_many`, and searches nothing, if these have by far too many pairs.
-Task search_larger(Collider collider, std::uint64_t step, Report report, bool& too_many) {
+/// Finds pairs to keep. Sets `too_many` if they are, and then nothing is kept; if they are by far, larger
+/// boxes are not searched.
+Task find_kept(Collider collider, std::uint64_t step, bool& too_many) {
   const std::uint64_t own_step = remaining(collider).new_step();
   Future<Summary> known;
   collider.neighbours.broadcast<&Neighbours::enlarge>(
@@ -124,24 +125,9 @@ Task search_larger(Collider collider, std::uint64_t step, Report report, bool& t
   Summary summary = co_await known;
   too_many = are_far_too_many(summary, collider.options.rules.touching, n_pes());
   if (too_many) summary = {};  // nothing is searched
-  co_await collide_taken(collider, own_step, summary, report);
-}
-
-/// Finds pairs to keep. Sets `too_many` if they are, and then nothing is kept.
-Task find_kept(Collider collider, std::uint64_t step, bool& too_many) {
   const Report to_neighbours{
       report_to_neighbours(collider.neighbours, step), {}, Receivers::one_owner};
-  std::exception_ptr refused;
-  try {
-    co_await search_larger(collider, step, to_neighbours, too_many);
-  } catch (...) {
-    refused = std::current_exception();
-  }
-  if (refused) {
-    const auto body = [&] { collider.neighbours.broadcast<&Neighbours::drop>(step); };
-    co_await epoch(body);
-    std::rethrow_exception(refused);
-  }
+  co_await collide_taken(collider, own_step, summary, to_neighbours);
   if (too_many) co_return;
   Future<bool> counted;
   collider.neighbours.broadcast<&Neighbours::count>(step, counted.callback());
@@ -180,6 +166,8 @@ Task run_collision(Collider collider, Report report, Callback<void> taken) {
     } catch (...) {
       refused = std::current_exception();
     }
+    const auto drop = [&] { collider.neighbours.broadcast<&Neighbours::drop>(step); };
+    if (refused) co_await epoch(drop);
     remaining(collider).end_step();
     if (refused) std::rethrow_exception(refused);
     co_return;

@@ -8,6 +8,7 @@
 #include "tests/support/capsule_of_box.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/n_seeds.hpp"
+#include "tests/support/reported_pairs.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -55,34 +56,8 @@ std::vector<Item> boxes_of(const Scene& scene, std::int32_t client) {
   return items;
 }
 
-/// A report: one pair, as an owner received it.
-struct Reported {
-  std::uint64_t owner = 0, other = 0;
-  LocalPair pair;
-  friend auto operator<=>(const Reported&, const Reported&) = default;
-};
-using Reports = std::vector<Reported>;
-
-struct Join {
-  Reports operator()(Reports a, const Reports& b) const {
-    a.insert(a.end(), b.begin(), b.end());
-    return a;
-  }
-};
-
-Reported reported(const ObjectId& mine, const ObjectId& theirs) {
-  return {static_cast<std::uint64_t>(mine.owner),
-          static_cast<std::uint64_t>(theirs.owner),
-          {mine.local, theirs.local}};
-}
-
-/// Sorts the reports, and the two objects of a pair with one owner, whose order has no meaning.
-Reports in_order(Reports list) {
-  for (Reported& t : list)
-    if (t.owner == t.other && t.pair.theirs < t.pair.mine) std::swap(t.pair.mine, t.pair.theirs);
-  std::sort(list.begin(), list.end());
-  return list;
-}
+using test::in_order;
+using test::Reports;
 
 Reports oracle(const Scene& scene, PairRules rules, std::optional<ModelId> only) {
   std::vector<Item> all;
@@ -90,16 +65,7 @@ Reports oracle(const Scene& scene, PairRules rules, std::optional<ModelId> only)
     const auto items = boxes_of(scene, c);
     all.insert(all.end(), items.begin(), items.end());
   }
-  Reports out;
-  for (std::size_t i = 0; i < all.size(); ++i)
-    for (std::size_t j = i + 1; j < all.size(); ++j) {
-      const ObjectId &a = all[i].id, &b = all[j].id;
-      if (rules.within_model == WithinModel::skip && a.model == b.model) continue;
-      if (!overlap(all[i].box, all[j].box, rules.touching)) continue;
-      if (!only || a.model == *only) out.push_back(reported(a, b));
-      if (only ? b.model == *only : a.owner != b.owner) out.push_back(reported(b, a));
-    }
-  return in_order(std::move(out));
+  return test::all_reports(all, rules, only);
 }
 
 /// The arguments of run_collision().
@@ -132,9 +98,7 @@ class Client : public Chare<Client, Index1> {
   }
   void receive(const Hits& hits) {
     TESS_CHECK(hits.owner == owner_of(index()), "hits of another owner");
-    for (const LocalPair& pair : hits.pairs)
-      reported_.push_back(
-          {static_cast<std::uint64_t>(hits.owner), static_cast<std::uint64_t>(hits.other), pair});
+    test::add(reported_, hits);
   }
   Task collide(Collision collision) {
     co_await run_collision(collision.collider, collision.report, collision.taken);
@@ -162,7 +126,7 @@ class Client : public Chare<Client, Index1> {
     for (const Item& item : boxes_of(scene, index().x)) boxes.push_back(item.box);
     collider.submit_early({owner_of(index()), ModelId{}, std::move(boxes)});
   }
-  void gather(Callback<Reports> target) { contribute(Join{}, reported_, std::move(target)); }
+  void gather(Callback<Reports> target) { contribute(concatenate, reported_, std::move(target)); }
   void count_refused(Callback<std::int64_t> target) {
     contribute(sum, n_refused_, std::move(target));
   }

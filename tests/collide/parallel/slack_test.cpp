@@ -10,6 +10,7 @@
 #include "runtime/testing.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/n_seeds.hpp"
+#include "tests/support/reported_pairs.hpp"
 
 #include <algorithm>
 #include <array>
@@ -73,36 +74,14 @@ std::vector<Item> items_of(const Moving& scene, std::int32_t client, std::int32_
   return items;
 }
 
-/// One hit, as an owner received it.
-using Received = std::array<std::uint64_t, 4>;
+using test::in_order;
+using test::Reports;
 
-Received received(const ObjectId& mine, const ObjectId& theirs) {
-  return {static_cast<std::uint64_t>(mine.owner), static_cast<std::uint64_t>(theirs.owner),
-          static_cast<std::uint64_t>(mine.local), static_cast<std::uint64_t>(theirs.local)};
-}
-
-/// In a pair with one owner the order has no meaning.
-std::vector<Received> in_order(std::vector<Received> all) {
-  for (auto& [owner, other, mine, theirs] : all)
-    if (owner == other && theirs < mine) std::swap(mine, theirs);
-  std::sort(all.begin(), all.end());
-  return all;
-}
-
-std::vector<Received> all_pairs(const Moving& scene, std::int32_t step) {
+Reports all_pairs(const Moving& scene, std::int32_t step) {
   std::vector<Item> all;
   for (std::int32_t c = 0; c < scene.n_clients; ++c)
     for (const Item& item : items_of(scene, c, step)) all.push_back(item);
-  std::vector<Received> out;
-  for (std::size_t i = 0; i < all.size(); ++i)
-    for (std::size_t j = i + 1; j < all.size(); ++j) {
-      const ObjectId &a = all[i].id, &b = all[j].id;
-      if (scene.rules.within_model == WithinModel::skip && a.model == b.model) continue;
-      if (!overlap(all[i].box, all[j].box, scene.rules.touching)) continue;
-      if (!scene.only || a.model == *scene.only) out.push_back(received(a, b));
-      if (scene.only ? b.model == *scene.only : a.owner != b.owner) out.push_back(received(b, a));
-    }
-  return in_order(std::move(out));
+  return test::all_reports(all, scene.rules, scene.only);
 }
 
 class Mover : public Chare<Mover> {
@@ -121,11 +100,10 @@ class Mover : public Chare<Mover> {
   }
   void receive(const Hits& hits) {
     TESS_CHECK(hits.owner == owner_of(index()), "hits of another owner");
-    for (const LocalPair& pair : hits.pairs)
-      received_.push_back(received({hits.owner, pair.mine, {}}, {hits.other, pair.theirs, {}}));
+    test::add(received_, hits);
   }
   /// Of the steps since the last call.
-  void give(Callback<std::vector<Received>> target) {
+  void give(Callback<Reports> target) {
     contribute(concatenate, std::exchange(received_, {}), std::move(target));
   }
   void give_refused(Callback<std::string> target) { contribute(max, refused_, std::move(target)); }
@@ -150,12 +128,12 @@ class Mover : public Chare<Mover> {
 
  private:
   Moving scene_;
-  std::vector<Received> received_;
+  Reports received_;
   std::string refused_;
 };
 
 struct Outcome {
-  std::vector<std::vector<Received>> steps;
+  std::vector<Reports> steps;
   std::vector<CollisionStatistics> statistics;
   std::string refused;
   std::size_t n_left = 0;
@@ -176,7 +154,7 @@ Task begin(const Moving& scene, const ColliderOptions& options, Movers& out) {
 }
 
 Task give_all(const Movers& movers, Outcome& outcome) {
-  Future<std::vector<Received>> all;
+  Future<Reports> all;
   movers.clients.broadcast<&Mover::give>(all.callback());
   outcome.steps.push_back(in_order(co_await all));
 }
@@ -279,9 +257,9 @@ TEST_CASE("collisions with a slack may overlap", "[collide][slack]") {
     machine_of(seed)
         .run([&]() -> Task { return collide_in_a_row(scene, n_steps, outcome); })
         .require_success();
-    std::vector<Received> expected;
+    Reports expected;
     for (std::int32_t step = 0; step < n_steps; ++step)
-      for (const Received& one : all_pairs(scene, step)) expected.push_back(one);
+      for (const test::Reported& one : all_pairs(scene, step)) expected.push_back(one);
     REQUIRE((outcome.steps.at(0) == in_order(std::move(expected))));
   });
 }
@@ -371,7 +349,7 @@ TEST_CASE("larger boxes with by far too many pairs are not searched", "[collide]
       .run([&]() -> Task { return collide_steps(scene, 2, outcome); })
       .require_success();
   constexpr std::size_t n_pairs = std::size_t{1800} * 1799 / 2;
-  for (const std::vector<Received>& step : outcome.steps) {
+  for (const Reports& step : outcome.steps) {
     REQUIRE(step.size() == n_pairs);
     REQUIRE(std::adjacent_find(step.begin(), step.end()) == step.end());
   }
