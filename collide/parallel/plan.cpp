@@ -21,6 +21,8 @@ std::size_t most_sampled(std::int32_t n_pes) {
   return n_pes <= 64 ? 4096 : 2048;
 }
 
+constexpr std::size_t few_sampled = 16;
+
 /// The values of the PEs, in the order of the PEs.
 template <class Value>
 std::vector<Value> by_pe(const std::vector<Summary::Sampled>& sampled,
@@ -54,8 +56,11 @@ Summary::Summary(const ObjectList& objects, std::int32_t pe, std::size_t n_sampl
   for (std::uint32_t i = 0; has_capsules && i < objects.size(); ++i)
     add(objects.boxes()[i], objects.capsule(i));
   const std::size_t n_taken = std::min<std::size_t>(n, n_sampled);
+  // The few of many PEs have other places on each: clients often submit in the same order everywhere,
+  // such as one model first.
+  const std::size_t seed = n_taken <= few_sampled ? static_cast<std::size_t>(pe) : 0;
   for (std::size_t i = 0; i < n_taken; ++i) {
-    const std::size_t at = search::scattered(i, n_taken, n);
+    const std::size_t at = search::scattered(i, n_taken, n, seed);
     sample.push_back(objects.boxes()[at]);
     if (has_capsules) capsules.push_back(objects.capsule(static_cast<std::uint32_t>(at)));
   }
@@ -142,7 +147,12 @@ double chosen_size(const Summary& summary, std::int32_t n_pes) {
     while ((summary.octaves[least / 64] >> least % 64 & 1U) == 0) ++least;
     size = std::min(size, std::max(edge_of(points), search::size_of_octave<double>(least)));
   }
-  return size;
+  // Objects that are a little too large for the voxels would stand on a level of few voxels, each of
+  // which has to meet all small objects in it.
+  std::size_t octave = search::n_octaves<double>;
+  while ((summary.octaves[--octave / 64] >> octave % 64 & 1U) == 0) continue;
+  const double fitting = search::size_of_octave<double>(static_cast<std::uint32_t>(octave));
+  return size < fitting && fitting <= 2 * size ? fitting : size;
 }
 
 PlanOfPieces choose_pieces(const Summary& summary, const ColliderOptions& options) {

@@ -68,7 +68,7 @@ double n_vectors(const Place& place, double partners, double lanes) {
 double cost_of_chares(const Place& place, double cost, double n_cells, const Sharing& sharing) {
   if (!place.on_chares) return 0;
   const double n_used = std::min(n_cells, 1 / std::max(sharing.within_a, 1e-12));
-  return costs::per_chare * n_used + cost / n_used * place.n_pes;
+  return costs::per_chare * n_used + cost / n_used * (place.n_pes - 1);
 }
 
 }  // namespace
@@ -146,7 +146,8 @@ Choice<D> GridChooser<Real, D>::choose_again(const Problem<Real, D>& problem,
   };
   CellAt<D> one;
   one.fill(1);
-  Choice<D> best{one, cost_of(n_a, n_b, {1, 1})};
+  const double whole = cost_of(n_a, n_b, {1, 1});
+  Choice<D> best{one, whole + cost_of_chares(place, whole, 1, {1, 1})};
   if (!can_be_cut(widest)) return best;
 
   const double most_cells = std::min(0x1p26, 2 * (n_a + n_b) + 64);

@@ -36,10 +36,12 @@ template <class Real, std::size_t D>
   return bounds;
 }
 
-/// A position in a sample that does not follow a period of the input.
-[[nodiscard]] inline std::size_t scattered(std::size_t i, std::size_t n_samples, std::size_t n) {
+/// A position in a sample that does not follow a period of the input. That of sample 0 is the first
+/// object, unless a seed is given.
+[[nodiscard]] inline std::size_t scattered(std::size_t i, std::size_t n_samples, std::size_t n,
+                                           std::size_t seed = 0) {
   const std::size_t begin = i * n / n_samples, end = (i + 1) * n / n_samples;
-  return begin + (i * 0x9E3779B97F4A7C15U >> 32) % (end - begin);
+  return begin + ((i + seed) * 0x9E3779B97F4A7C15U >> 32) % (end - begin);
 }
 
 template <std::size_t D>

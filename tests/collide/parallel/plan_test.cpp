@@ -24,9 +24,21 @@ std::vector<Aabb> sheet(int n) {
   return boxes;
 }
 
-/// The objects per voxel that is chosen for a sheet of n × n boxes, spread over some PEs.
-double objects_per_voxel(int n, std::int32_t n_pes) {
-  const std::vector<Aabb> boxes = sheet(n);
+/// Cubes in a unit cube.
+std::vector<Aabb> crowd(std::size_t n, double edge) {
+  std::uint64_t drawn = 0;
+  const auto draw = [&] { return static_cast<double>(mix(++drawn) >> 11) * 0x1p-53 * (1 - edge); };
+  std::vector<Aabb> boxes(n);
+  for (Aabb& box : boxes)
+    for (std::size_t k = 0; k < 3; ++k) {
+      box.lo[k] = draw();
+      box.hi[k] = box.lo[k] + edge;
+    }
+  return boxes;
+}
+
+/// The plan for boxes that are spread over some PEs.
+Plan plan_of(const std::vector<Aabb>& boxes, std::int32_t n_pes) {
   Summary all;
   for (std::size_t pe = 0; pe < static_cast<std::size_t>(n_pes); ++pe) {
     const std::size_t pes = static_cast<std::size_t>(n_pes);
@@ -40,6 +52,12 @@ double objects_per_voxel(int n, std::int32_t n_pes) {
   const Plan plan = make_plan(JoinSummaries{}.finish(std::move(all)), n_pes,
                               {.rules = {.within_model = WithinModel::test}}, 1);
   REQUIRE_FALSE(plan.nothing);
+  return plan;
+}
+
+/// The objects per voxel that is chosen for a sheet of n × n boxes.
+double objects_per_voxel(int n, std::int32_t n_pes) {
+  const Plan plan = plan_of(sheet(n), n_pes);
   return plan.size[0] * plan.size[1];
 }
 
@@ -56,9 +74,40 @@ TEST_CASE("a voxel on chares has enough objects to be worth its messages", "[col
 }
 
 TEST_CASE("on many PEs voxels are smaller, so that each PE has some", "[collide][parallel]") {
-  const double one = objects_per_voxel(256, 1), many = objects_per_voxel(256, 256);
+  const double one = objects_per_voxel(256, 1), many = objects_per_voxel(256, 2048);
   CHECK(many < one);
-  CHECK(256 * 256 / many / 256 >= 4);
+  CHECK(256 * 256 / many / 2048 >= 2);
+}
+
+// One PE compared 7 000 boxes for .05 s, and 1 023 waited.
+TEST_CASE("many PEs do not wait for one that has the only voxel", "[collide][parallel]") {
+  for (const double edge : {.03, .06, .1, .2}) {
+    CAPTURE(edge);
+    const std::vector<Aabb> boxes = crowd(7000, edge);
+    double size = 1;
+    for (const std::int32_t n_pes : {16, 64, 256, 1024}) {
+      CAPTURE(n_pes);
+      const Plan plan = plan_of(boxes, n_pes);
+      CHECK(plan.size[0] <= size);
+      CHECK(n_pes * plan.size[0] * plan.size[0] * plan.size[0] <= 16);
+      size = plan.size[0];
+    }
+  }
+}
+
+// In voxels of a twelfth, boxes longer than a sixth stood on a level of eight voxels, and every PE waited
+// for the one that compared all others with them.
+TEST_CASE("objects that are a little too large for the voxels have no level of their own",
+          "[collide][parallel]") {
+  for (const double edge : {.03, .04, .06, .08, .1, .13, .17, .2})
+    for (const std::int32_t n_pes : {1, 16, 256, 1024}) {
+      CAPTURE(edge, n_pes);
+      std::vector<Aabb> boxes = crowd(5000, edge / 4);
+      const std::vector<Aabb> large = crowd(500, edge);
+      boxes.insert(boxes.end(), large.begin(), large.end());
+      const Plan plan = plan_of(boxes, n_pes);
+      CHECK(plan.levels == 1U << plan.level_of(edge));
+    }
 }
 
 // All PEs wait for the summaries of all. With eight boxes per PE, 1 500 PEs waited .18 ms.
