@@ -11,6 +11,7 @@
 
 #include "runtime/array_proxy.hpp"
 #include "runtime/chare.hpp"
+#include "runtime/scheduler/to_all.hpp"
 
 #include <memory>
 #include <tuple>
@@ -58,16 +59,6 @@ constexpr LateMessages late_messages_of() {
   }
 }
 
-/// Passes the message to its handler on all PEs; here at once, so that the proxy is valid from now on.
-template <auto handler, class Message>
-void create_on_all(Pe& pe, Message message) {
-  for (std::int32_t to = 0; to < pe.n_pes(); ++to) {
-    pe.completion().sent(pe.context().epoch);
-    if (PeId{to} != pe.id()) send_system<handler>(pe, PeId{to}, message);
-  }
-  handler(pe, std::move(message));
-}
-
 template <class C, class... Args>
 CreateArray<C, std::decay_t<Args>...> new_array(Pe& pe, const Range& range, Args&&... args) {
   return {pe.new_collection_id(late_messages_of<C>()),
@@ -81,7 +72,8 @@ CollectionId create_collection(const Range& range, Args&&... args) {
   Pe& pe = current_pe();
   auto array = new_array<C>(pe, range, std::forward<Args>(args)...);
   const CollectionId id = array.id;
-  create_on_all<&create_arrives<C, std::decay_t<Args>...>>(pe, std::move(array));
+  // Here at once, so that the proxy is valid from now on.
+  send_to_all<&create_arrives<C, std::decay_t<Args>...>>(pe, std::move(array));
   return id;
 }
 

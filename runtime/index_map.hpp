@@ -129,17 +129,17 @@ class TypedIndexMap final : public IndexMap {
 };
 
 template <class C, class Map, class... Args>
-struct CreateMapped {
-  CreateArray<C, Args...> array;
+struct CreateMapped : CreateArray<C, Args...> {
   Map map;
   template <class Ar>
   void serialize(Ar& ar) {
-    ar(array, map);
+    CreateArray<C, Args...>::serialize(ar);
+    ar(map);
   }
 };
 template <class C, class Map, class... Args>
 void create_mapped_arrives(Pe& pe, CreateMapped<C, Map, Args...>&& m) {
-  make_array(pe, m.array, std::make_shared<TypedIndexMap<C, Map>>(std::move(m.map)));
+  make_array(pe, m, std::make_shared<TypedIndexMap<C, Map>>(std::move(m.map)));
 }
 
 }  // namespace detail
@@ -156,8 +156,8 @@ ArrayProxy<C> create(const Mapped<Map>& of, Args&&... args) {
   Pe& pe = current_pe();
   using Create = detail::CreateMapped<C, Map, std::decay_t<Args>...>;
   Create mapped{detail::new_array<C>(pe, of.range, std::forward<Args>(args)...), of.map};
-  const ArrayProxy<C> proxy(mapped.array.id);
-  detail::create_on_all<&detail::create_mapped_arrives<C, Map, std::decay_t<Args>...>>(
+  const ArrayProxy<C> proxy(mapped.id);
+  detail::send_to_all<&detail::create_mapped_arrives<C, Map, std::decay_t<Args>...>>(
       pe, std::move(mapped));
   return proxy;
 }

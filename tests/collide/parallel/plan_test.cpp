@@ -110,6 +110,23 @@ TEST_CASE("objects that are a little too large for the voxels have no level of t
     }
 }
 
+// With the same places on every PE, half of the sample were the first objects.
+TEST_CASE("few samples of many PEs are from everywhere in their lists", "[collide][parallel]") {
+  std::vector<Aabb> boxes(8);  // one large box, and points
+  boxes[0].hi = {1, 1, 1};
+  ObjectList objects;
+  objects.append(Objects{.boxes = boxes}, PeId{0});
+  int n = 0, n_large = 0;
+  for (std::int32_t pe = 0; pe < 1024; ++pe)
+    for (const Aabb& box : Summary(objects, pe, n_sampled_per_pe({}, 1024)).sample) {
+      ++n;
+      n_large += box.hi[0] > 0 ? 1 : 0;
+    }
+  CHECK(n == 2048);
+  CHECK(n_large > 0.8 * n / 8);
+  CHECK(n_large < 1.2 * n / 8);
+}
+
 // All PEs wait for the summaries of all. With eight boxes per PE, 1 500 PEs waited .18 ms.
 TEST_CASE("many PEs send small summaries, without boxes if the size of a voxel is given",
           "[collide][parallel]") {
