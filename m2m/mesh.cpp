@@ -15,16 +15,14 @@ double signed_volume(const TetMesh& mesh, std::size_t tet) {
   return signed_volume(corners);
 }
 
+// Each coordinate is read alone: a copy of the corners in vectors waits for the stores that have just
+// written them.
 double signed_volume(const std::array<Point, 4>& corners) {
-  const Point o = corners[0];
-  std::array<Point, 3> e{corners[1], corners[2], corners[3]};
-  for (Point& edge : e) {
-    for (std::size_t axis = 0; axis < 3; ++axis) edge[axis] -= o[axis];
-  }
-  return (e[0][0] * (e[1][1] * e[2][2] - e[1][2] * e[2][1]) +
-          e[0][1] * (e[1][2] * e[2][0] - e[1][0] * e[2][2]) +
-          e[0][2] * (e[1][0] * e[2][1] - e[1][1] * e[2][0])) /
-         6.0;
+  const double x = corners[0][0], y = corners[0][1], z = corners[0][2];
+  const double ax = corners[1][0] - x, ay = corners[1][1] - y, az = corners[1][2] - z;
+  const double bx = corners[2][0] - x, by = corners[2][1] - y, bz = corners[2][2] - z;
+  const double cx = corners[3][0] - x, cy = corners[3][1] - y, cz = corners[3][2] - z;
+  return (ax * (by * cz - bz * cy) + ay * (bz * cx - bx * cz) + az * (bx * cy - by * cx)) / 6.0;
 }
 
 std::string skipped_text(const TetMesh& mesh) {
