@@ -100,13 +100,21 @@ TEST_CASE("many PEs do not wait for one that has the only voxel", "[collide][par
 TEST_CASE("objects that are a little too large for the voxels have no level of their own",
           "[collide][parallel]") {
   for (const double edge : {.03, .04, .06, .08, .1, .13, .17, .2})
-    for (const std::int32_t n_pes : {1, 16, 256, 1024}) {
-      CAPTURE(edge, n_pes);
+    for (const double scale : {1., 1.2, 1.4, 1.7}) {
+      CAPTURE(edge, scale);
       std::vector<Aabb> boxes = crowd(5000, edge / 4);
       const std::vector<Aabb> large = crowd(500, edge);
       boxes.insert(boxes.end(), large.begin(), large.end());
-      const Plan plan = plan_of(boxes, n_pes);
-      CHECK(plan.levels == 1U << plan.level_of(edge));
+      for (Aabb& box : boxes)
+        for (std::size_t k = 0; k < 3; ++k) {
+          box.lo[k] *= scale;
+          box.hi[k] *= scale;
+        }
+      for (const std::int32_t n_pes : {1, 16, 256, 1024}) {
+        CAPTURE(n_pes);
+        const Plan plan = plan_of(boxes, n_pes);
+        CHECK(plan.levels == 1U << plan.level_of(edge * scale));
+      }
     }
 }
 
