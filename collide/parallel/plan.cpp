@@ -6,6 +6,7 @@
 #include "runtime/core/error.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -49,8 +50,8 @@ std::vector<Value> by_pe(const std::vector<Summary::Sampled>& sampled,
 
 Summary::Summary(const ObjectList& objects, std::int32_t pe, std::size_t n_sampled)
     : n(objects.size()), bounds(objects.bounds()), has_capsules(objects.has_capsules()) {
-  for (std::size_t octave = 0; octave < search::n_octaves<double>; ++octave)
-    if (objects.has_octave(octave)) octaves[octave / 64] |= std::uint64_t{1} << octave % 64;
+  for (std::uint32_t octave = 0; octave < Octaves::n; ++octave)
+    if (objects.has_octave(octave)) octaves.add(octave);
   for (const ObjectList::Source& source : objects.sources()) add(source.model);
   if (n != 0 && !has_capsules) largest_radius = unknown_capsule.radius;
   for (std::uint32_t i = 0; has_capsules && i < objects.size(); ++i)
@@ -93,7 +94,7 @@ Summary JoinSummaries::combine(Summary a, const Summary& b) const {
   }
   a.sample.insert(a.sample.end(), b.sample.begin(), b.sample.end());
   a.sampled.insert(a.sampled.end(), b.sampled.begin(), b.sampled.end());
-  for (std::size_t i = 0; i < a.octaves.size(); ++i) a.octaves[i] |= b.octaves[i];
+  a.octaves.add(b.octaves);
   for (const ModelId model : b.models) a.add(model);
   return a;
 }
@@ -143,15 +144,12 @@ double chosen_size(const Summary& summary, std::int32_t n_pes) {
   if (whole.cost > 4 * points.cost) {
     // Large objects ask for large voxels, in which too many small ones meet: the smallest objects
     // decide, and the others stand on higher levels.
-    std::uint32_t least = 0;
-    while ((summary.octaves[least / 64] >> least % 64 & 1U) == 0) ++least;
-    size = std::min(size, std::max(edge_of(points), search::size_of_octave<double>(least)));
+    const double least = search::size_of_octave<double>(summary.octaves.least());
+    size = std::min(size, std::max(edge_of(points), least));
   }
   // Objects that are a little too large for the voxels would stand on a level of few voxels, each of
   // which has to meet all small objects in it.
-  std::size_t octave = search::n_octaves<double>;
-  while ((summary.octaves[--octave / 64] >> octave % 64 & 1U) == 0) continue;
-  const double fitting = search::size_of_octave<double>(static_cast<std::uint32_t>(octave));
+  const double fitting = search::size_of_octave<double>(summary.octaves.greatest());
   return size < fitting && fitting <= 2 * size ? fitting : size;
 }
 
@@ -184,14 +182,10 @@ Summary divided(const Summary& summary, double longest) {
   if (!summary.sample.empty()) out.n = summary.n * out.sample.size() / summary.sample.size();
   const double largest =
       std::max(longest, summary.longest_capsule / search::most_pieces) + 2 * summary.largest_radius;
-  std::size_t octave = search::n_octaves<double>;
-  while (octave-- > 0)
-    if ((summary.octaves[octave / 64] >> octave % 64 & 1U) != 0) break;
-  if (largest < std::numeric_limits<double>::infinity())
-    octave = std::min<std::size_t>(octave, search::octave_of(largest));
-  for (std::size_t o = 0; o <= octave; ++o) out.octaves[o / 64] |= std::uint64_t{1} << o % 64;
-  for (std::size_t o = octave + 1; o < search::n_octaves<double>; ++o)
-    out.octaves[o / 64] &= ~(std::uint64_t{1} << o % 64);
+  const std::uint32_t greatest = summary.octaves.greatest();
+  const bool is_known = largest < std::numeric_limits<double>::infinity();
+  out.octaves =
+      Octaves::up_to(is_known ? std::min(greatest, search::octave_of(largest)) : greatest);
   return out;
 }
 
@@ -225,8 +219,8 @@ Plan make_plan(const Summary& summary, std::int32_t n_pes, const ColliderOptions
     edge = std::clamp(std::max(edge, std::ldexp(widest, -30)), 1e-300, 1e300);
     plan.size = {edge, edge, edge};
   }
-  for (std::uint32_t octave = 0; octave < 2048; ++octave) {
-    if ((boxes.octaves[octave / 64] >> octave % 64 & 1U) == 0) continue;
+  for (std::uint32_t octave = 0; octave < Octaves::n; ++octave) {
+    if (!boxes.octaves.has(octave)) continue;
     // From its least to its greatest size.
     const double least = octave == 0 ? 0 : search::size_of_octave<double>(octave);
     for (Level l = plan.level_of(least); l <= plan.level_of(2 * least); ++l) plan.levels |= 1U << l;

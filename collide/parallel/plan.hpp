@@ -8,10 +8,10 @@
 #include "collide/collider_options.hpp"
 #include "collide/hit.hpp"
 #include "collide/parallel/object_list.hpp"
+#include "collide/parallel/octaves.hpp"
 #include "collide/search/slim_capsule.hpp"
 #include "collide/serial/voxel_grid.hpp"
 
-#include <array>
 #include <bit>
 #include <cstdint>
 #include <vector>
@@ -33,8 +33,8 @@ struct Summary {
     std::uint32_t n = 0;
   };
   std::vector<Sampled> sampled;
-  std::array<std::uint64_t, 32> octaves{};  ///< a bit per octave of the longest extents
-  std::vector<ModelId> models;              ///< at most three different ones
+  Octaves octaves;
+  std::vector<ModelId> models;  ///< at most three different ones
 
   Summary() = default;
   /// Of the objects on a PE, with so many of their boxes as a sample.

@@ -19,7 +19,7 @@ namespace tess::collide::search {
 [[nodiscard]] inline std::uint32_t octave_of(double size) noexcept {
   return static_cast<std::uint32_t>(std::bit_cast<std::uint64_t>(size) >> 52 & 0x7FFU);
 }
-/// The largest size of an octave, about.
+/// The size at which an octave begins.
 template <class Real>
 [[nodiscard]] Real size_of_octave(std::uint32_t octave) noexcept {
   constexpr int bias = sizeof(Real) == sizeof(float) ? 127 : 1023;
