@@ -1,46 +1,27 @@
 #include "runtime/collections/ending.hpp"
 
-#include "runtime/base/spanning_tree.hpp"
 #include "runtime/collections/collection_action.hpp"
 #include "runtime/scheduler/pe_action.hpp"
+#include "runtime/scheduler/to_all.hpp"
 
 namespace tess::detail {
 namespace {
 
-/// Each PE passes it on along the tree that begins at the sender.
 struct End {
   CollectionId id{};
   EpochId epoch{};
-  PeId root{};
 
-  /// An end that came another way was here before.
-  std::uint64_t drop(Pe& pe) const;
+  std::uint64_t drop(Pe& pe) const {
+    pe.completion().processed(epoch);
+    return 0;
+  }
 };
 struct Free {
   CollectionId id{};
 };
 
-void ending_arrives(Collection& collection, End&& m);
-
-void send(Pe& pe, PeId to, const End& end) {
-  pe.completion().sent(end.epoch);
-  send_to_collection<&ending_arrives>(pe, end.id, to, end);
-}
-
-void pass_on(Pe& pe, const End& end) {
-  const SpanningTree tree(pe.id(), end.root, pe.n_pes());
-  for (std::int32_t slot = 0; slot < tree.n_children(); ++slot) send(pe, tree.child(slot), end);
-}
-
-std::uint64_t End::drop(Pe& pe) const {
-  pass_on(pe, *this);
-  pe.completion().processed(epoch);
-  return 0;
-}
-
 void ending_arrives(Collection& collection, End&& m) {
   Pe& pe = collection.pe();
-  pass_on(pe, m);
   std::unique_ptr<HostedCollection> ending = pe.take_out(collection.id());
   collection.end();
   if (collection.n_local() != 0) {
@@ -49,6 +30,11 @@ void ending_arrives(Collection& collection, End&& m) {
   }
   ending.reset();
   pe.completion().processed(m.epoch);
+}
+
+/// On each PE, whether the collection is known there already, or has ended by another call.
+void end_arrives(Pe& pe, End&& m) {
+  send_to_collection<&ending_arrives>(pe, m.id, pe.id(), m);
 }
 
 void freeing_arrives(Pe& pe, Free&& m) {
@@ -64,7 +50,7 @@ void freeing_arrives(Pe& pe, Free&& m) {
 void end_collection(CollectionId id) {
   if (id == CollectionId{}) refuse_empty_proxy("destroy() of");
   Pe& pe = current_pe();
-  send(pe, pe.id(), {id, pe.context().epoch, pe.id()});
+  send_to_all<&end_arrives>(pe, {id, pe.context().epoch});
 }
 
 bool in_running_program() {

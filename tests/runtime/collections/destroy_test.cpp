@@ -217,7 +217,6 @@ class Counted : public tess::Chare<Counted, tess::Index1> {
   static inline int n_alive = 0;
   Counted() { ++n_alive; }
   ~Counted() override { --n_alive; }
-  void nothing() {}
 };
 
 /// On some PEs, which are drawn, its member ends an array.
