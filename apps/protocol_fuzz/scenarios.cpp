@@ -66,6 +66,8 @@ constexpr std::array known{
     Scenario{"destroyed",
              "arrays end in mid use: no message is lost unseen, and nothing of them is left",
              &destroyed, 40},
+    Scenario{"ends_at_once", "what several PEs end at once, while it is created, has ended on all",
+             &ends_at_once, 10, true},
     Scenario{"constructors",
              "constructors contribute and reach the balance barrier, once in an element's life",
              &constructors, 6},

@@ -41,6 +41,7 @@ void deadlocks(Trial& trial);            // completion/ends.cpp
 void exceptions(Trial& trial);           // completion/ends.cpp
 void dead_letters(Trial& trial);         // completion/ends.cpp
 void destroyed(Trial& trial);            // elements/destroyed.cpp
+void ends_at_once(Trial& trial);         // elements/ends_at_once.cpp
 void groups(Trial& trial);               // collectives/groups.cpp
 void balance_rounds(Trial& trial);       // elements/balance.cpp
 void balance_barrier(Trial& trial);      // elements/balance_barrier.cpp

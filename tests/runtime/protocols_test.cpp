@@ -153,6 +153,9 @@ TEST_CASE("messages to the dead are counted", "[runtime][protocol]") {
 TEST_CASE("arrays that end in mid use leave nothing behind", "[runtime][protocol]") {
   run_seeds("destroyed");
 }
+TEST_CASE("what several PEs end at once has ended on all", "[runtime][protocol]") {
+  run_seeds("ends_at_once");
+}
 TEST_CASE("a constructor contributes to the first reduction of its element",
           "[runtime][protocol]") {
   run_seeds("constructors");
@@ -180,7 +183,7 @@ TEST_CASE("the scenarios hold on threads", "[runtime][protocol][threads]") {
         "timers",           "asks",           "payloads",        "floods",
         "groups",           "balance_rounds", "balance_barrier", "balance_rotate",
         "balance_periodic", "balance_epochs", "priorities",      "process_groups",
-        "all_at_once",      "scans"}) {
+        "all_at_once",      "scans",          "ends_at_once"}) {
     for (const std::int32_t n_pes : {1, 2, 4}) {
       for (std::uint64_t seed = 1; seed <= 3; ++seed) {
         Trial trial(seed, n_pes, Trial::On::threads);

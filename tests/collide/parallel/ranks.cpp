@@ -3,13 +3,15 @@
 // so that a voxel has more pairs than one message. Clients and voxels migrate between rounds, and
 // clients while their pairs are found. In every other round one owner receives a pair, otherwise both. In
 // some rounds boxes have capsules and are searched in pieces, which changes no pair. Then boxes that move
-// little are collided with a slack.
+// little are collided with a slack: of clients that stay, and in two colliders at once, of which one has
+// clients and voxels that migrate between rounds.
 #include "collide/collider.hpp"
 #include "runtime/balance.hpp"
 #include "runtime/core/hash.hpp"
 #include "runtime/runtime.hpp"
 #include "tests/support/capsule_of_box.hpp"
 
+#include <array>
 #include <cstdint>
 #include <random>
 #include <utility>
@@ -168,6 +170,42 @@ Task collide_slowly() {
   });
 }
 
+/// Two colliders at once. The clients of the first move on after every other round.
+Task collide_two_at_once() {
+  std::array<Collider, 2> colliders;
+  std::array<ArrayProxy<Client>, 2> clients;
+  co_await epoch([&] {
+    for (std::size_t i = 0; i < 2; ++i) {
+      colliders[i] = make_collider({.slack = (1 + 2 * static_cast<double>(i)) * slack});
+      clients[i] = create<Client>(range(2 * n_pes()));
+    }
+  });
+  const BalancerProxy voxels = start_balancing(colliders[0].voxels, {.strategy = "rotate"});
+  std::array<std::int32_t, 2> n_kept{};
+  for (std::int32_t round = first_slow_round; round < first_slow_round + n_rounds; ++round) {
+    Task first = collide_round(colliders[0], clients[0], round);
+    Task second = collide_round(colliders[1], clients[1], round);
+    co_await first;
+    co_await second;
+    for (std::size_t i = 0; i < 2; ++i) {
+      Future<CollisionStatistics> done;
+      report_statistics(colliders[i], done.callback());
+      n_kept[i] += (co_await done).searched ? 0 : 1;
+    }
+    if (round % 2 != 0) co_await epoch([&] { clients[0].broadcast<&Client::move>(); });
+    co_await voxels.round();
+  }
+  const std::int32_t expected = n_pes() == 1 ? n_rounds - 2 : n_rounds / 2;
+  TESS_CHECK(n_kept[0] == expected && n_kept[1] == n_rounds - 1, n_kept[0], " and ", n_kept[1],
+             " rounds tested pairs that were kept");
+  co_await epoch([&] {
+    for (std::size_t i = 0; i < 2; ++i) {
+      colliders[i].destroy();
+      clients[i].destroy();
+    }
+  });
+}
+
 Task collide_rounds() {
   const std::int32_t n_clients = 2 * n_pes();
   Collider collider;
@@ -189,6 +227,7 @@ Task collide_rounds() {
     clients.destroy();
   });
   co_await collide_slowly();
+  co_await collide_two_at_once();
 }
 
 }  // namespace

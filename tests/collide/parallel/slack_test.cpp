@@ -3,6 +3,7 @@
 #include "collide/collider.hpp"
 #include "collide/parallel/kept_pairs.hpp"
 #include "collide/parallel/plan.hpp"
+#include "runtime/balance.hpp"
 #include "runtime/core/error.hpp"
 #include "runtime/core/hash.hpp"
 #include "runtime/machine/threads.hpp"
@@ -198,6 +199,27 @@ Task collide_in_a_row(const Moving& scene, std::int32_t n_steps, Outcome& outcom
   co_await end(movers, outcome);
 }
 
+/// In two colliders, while the voxels of the first are balanced.
+Task collide_two_at_once(const std::array<Moving, 2>& scenes, std::int32_t n_steps,
+                         std::array<Outcome, 2>& outcomes) {
+  std::array<Movers, 2> movers;
+  for (std::size_t i = 0; i < 2; ++i) co_await begin(scenes[i], with_slack(scenes[i]), movers[i]);
+  const BalancerProxy voxels = start_balancing(movers[0].collider.voxels, {.strategy = "rotate"});
+  for (std::int32_t step = 0; step < n_steps; ++step) {
+    co_await epoch([&] {
+      for (const Movers& one : movers) one.clients.broadcast<&Mover::submit>(one.collider, step);
+    });
+    Task first = run_collision(movers[0].collider, movers[0].report);
+    Task second = run_collision(movers[1].collider, movers[1].report);
+    Task round = voxels.round();
+    co_await first;
+    co_await second;
+    co_await round;
+    for (std::size_t i = 0; i < 2; ++i) co_await give_all(movers[i], outcomes[i]);
+  }
+  for (std::size_t i = 0; i < 2; ++i) co_await end(movers[i], outcomes[i]);
+}
+
 Moving scene_of(std::uint64_t seed) {
   Moving scene{.seed = seed,
                .n_clients = static_cast<std::int32_t>(1 + seed % 6),
@@ -261,6 +283,25 @@ TEST_CASE("collisions with a slack may overlap", "[collide][slack]") {
     for (std::int32_t step = 0; step < n_steps; ++step)
       for (const test::Reported& one : all_pairs(scene, step)) expected.push_back(one);
     REQUIRE((outcome.steps.at(0) == in_order(std::move(expected))));
+  });
+}
+
+TEST_CASE("two colliders with a slack do not disturb each other, nor does the balancer of voxels",
+          "[collide][slack]") {
+  constexpr std::int32_t n_steps = 5;
+  test::for_seeds(1, 1 + test::n_seeds(100), [&](std::uint64_t seed) {
+    const std::array<Moving, 2> scenes{scene_of(seed), scene_of(seed + 1000)};
+    std::array<Outcome, 2> outcomes;
+    machine_of(seed)
+        .run([&]() -> Task { return collide_two_at_once(scenes, n_steps, outcomes); })
+        .require_success();
+    for (std::int32_t step = 0; step < n_steps; ++step) {
+      CAPTURE(step);
+      for (std::size_t i = 0; i < 2; ++i)
+        REQUIRE(
+            (outcomes[i].steps.at(static_cast<std::size_t>(step)) == all_pairs(scenes[i], step)));
+    }
+    REQUIRE(outcomes[1].n_left == 0);
   });
 }
 

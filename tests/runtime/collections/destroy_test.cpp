@@ -1,9 +1,7 @@
 // The end of arrays and groups: what is freed, and the error texts of later uses.
 #include "runtime/balance.hpp"
-#include "runtime/core/hash.hpp"
 #include "runtime/machine/simulated.hpp"
 #include "runtime/runtime.hpp"
-#include "runtime/testing.hpp"
 #include "tests/support/catch.hpp"
 
 #include <malloc.h>
@@ -210,48 +208,6 @@ tess::Task end_from_within() {
 TEST_CASE("an array and a group are ended by their own members", "[runtime][destroy]") {
   const Ending ending = run(3, []() -> tess::Task { return end_from_within(); });
   CHECK(ending.exit_code == 0);
-}
-
-class Counted : public tess::Chare<Counted, tess::Index1> {
- public:
-  static inline int n_alive = 0;
-  Counted() { ++n_alive; }
-  ~Counted() override { --n_alive; }
-};
-
-/// On some PEs, which are drawn, its member ends an array.
-class Ender : public tess::Group<Ender> {
- public:
-  void end(tess::ArrayProxy<Counted> array, std::uint64_t seed) {
-    if (tess::mix(seed + static_cast<std::uint64_t>(tess::my_pe().value)) % 3 == 0) array.destroy();
-  }
-  void look(tess::ArrayProxy<Counted> array, tess::Callback<int> n_ended) {
-    contribute(tess::sum, array.ended() ? 1 : 0, n_ended);
-  }
-};
-
-tess::Task end_at_once(std::uint64_t seed) {
-  const auto enders = tess::create_group<Ender>();
-  const auto array = tess::create<Counted>(tess::range(50));
-  co_await tess::epoch([&] {
-    enders.broadcast<&Ender::end>(array, seed);
-    array.destroy();
-  });
-  tess::Future<int> n_ended;
-  enders.broadcast<&Ender::look>(array, n_ended.callback());
-  CHECK(co_await n_ended == tess::n_pes());
-  CHECK(Counted::n_alive == 0);
-}
-
-// The ends cross each other, and the array's creation.
-TEST_CASE("an array that several PEs end at once has ended on all", "[runtime][destroy]") {
-  for (std::uint64_t seed = 0; seed < 300; ++seed) {
-    CAPTURE(seed);
-    const tess::test::Result result =
-        tess::test::Machine{.pes = static_cast<std::int32_t>(1 + seed % 40), .seed = seed}.run(
-            [&]() -> tess::Task { return end_at_once(seed); });
-    CHECK(result.exit_code == 0);
-  }
 }
 
 class Sleeper : public tess::Chare<Sleeper, tess::Index1> {
