@@ -2,20 +2,11 @@
 
 #include "collide/pairs.hpp"
 #include "collide/triangle.hpp"
+#include "runtime/core/cpu_clock.hpp"
 
 #include <chrono>
-#include <ctime>
 
 namespace collide_scene {
-namespace {
-
-double cpu_now() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
-}  // namespace
 
 SerialCollision collide_once(const Scene& scene, const Rules& rules, int step,
                              std::vector<ScenePair>* pairs) {
@@ -33,7 +24,7 @@ SerialCollision collide_once(const Scene& scene, const Rules& rules, int step,
     if (pairs != nullptr) pairs->push_back({i, j});
   };
   const auto begin = std::chrono::steady_clock::now();
-  const double cpu_begin = cpu_now();
+  const double cpu_begin = tess::thread_cpu_seconds();
   if (rules.triangles)
     for_each_pair(std::span<const Triangle>(scene.triangles), options, found);
   else if (scene.triangles.empty())
@@ -41,7 +32,7 @@ SerialCollision collide_once(const Scene& scene, const Rules& rules, int step,
   else
     for_each_pair(std::span<const Aabb>(boxes_of(scene)), options, found);
   out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  out.cpu_seconds = cpu_now() - cpu_begin;
+  out.cpu_seconds = tess::thread_cpu_seconds() - cpu_begin;
   out.answer.n_candidates = statistics.n_candidates;
   out.grid.voxel_size = statistics.voxel_size;
   out.grid.levels = statistics.n_levels;
