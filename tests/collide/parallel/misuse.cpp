@@ -1,8 +1,9 @@
 // destroy() of a collider while a collision of it runs must end the job with one clear line; run by
-// CMakeLists.txt with the place that calls it.
+// CMakeLists.txt with the place that calls it and the slack of the collider.
 //
-//     test_collider_misuse none|main|client
+//     test_collider_misuse none|main|client SLACK
 #include "collide/collider.hpp"
+#include "runtime/core/error.hpp"
 #include "runtime/runtime.hpp"
 
 #include <string>
@@ -24,9 +25,9 @@ class Client : public Group<Client> {
   void destroy_collider(const Collider& collider) { collider.destroy(); }
 };
 
-Task misuse(const std::string& where) {
+Task misuse(const std::string& where, double slack) {
   Collider collider;
-  co_await epoch([&] { collider = make_collider({}); });
+  co_await epoch([&] { collider = make_collider({.slack = slack}); });
   const auto clients = create_group<Client>();
   co_await epoch([&] { clients.broadcast<&Client::submit>(collider); });
   const Report report{report_to<&Client::receive>(clients), {}};
@@ -41,8 +42,10 @@ Task misuse(const std::string& where) {
 
 int run_misuse(int argc, char** argv) {
   Setup setup = take_options(argc, argv);
-  const std::string where = argc > 1 ? argv[1] : "";
-  return run(setup, [&]() -> Task { return misuse(where); });
+  if (argc != 3) fail(ErrorCode::bad_argument, "give a place and a slack");
+  const std::string where = argv[1];
+  const double slack = std::stod(argv[2]);
+  return run(setup, [&]() -> Task { return misuse(where, slack); });
 }
 
 }  // namespace
