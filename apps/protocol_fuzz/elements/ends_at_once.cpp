@@ -2,6 +2,7 @@
 // other and the creation. The oracle: all PEs have met each of them, all have ended, and nothing is left.
 #include "apps/protocol_fuzz/scenarios.hpp"
 
+#include <algorithm>
 #include <atomic>
 
 namespace tess::fuzz {
@@ -45,8 +46,9 @@ struct Collections {
   }
 };
 
+/// Some three PEs do, of many: each of the others may end what they create.
 bool creates(std::uint64_t seed, std::int32_t pe) {
-  return Random(mix(seed) + static_cast<std::uint64_t>(pe)).chance(0.4);
+  return Random(mix(seed) + static_cast<std::uint64_t>(pe)).chance(std::min(0.4, 3.0 / n_pes()));
 }
 
 class Ender : public Group<Ender> {

@@ -145,6 +145,15 @@ Task collide_round(Collider collider, ArrayProxy<Client> clients, std::int32_t r
              expected.n, " are right, or others than those");
 }
 
+/// Whether the last collision of a collider with a slack tested pairs that were kept.
+Task add_if_kept(Collider collider, std::int32_t& n_kept) {
+  Future<CollisionStatistics> done;
+  report_statistics(collider, done.callback());
+  const CollisionStatistics statistics = co_await done;
+  TESS_CHECK(statistics.n_kept > 0, "no pair of larger boxes was tested");
+  n_kept += statistics.searched ? 0 : 1;
+}
+
 /// New clients, which do not migrate: what moves to another PE is searched again.
 Task collide_slowly() {
   Collider collider;
@@ -156,11 +165,7 @@ Task collide_slowly() {
   std::int32_t n_kept = 0;
   for (std::int32_t round = first_slow_round; round < first_slow_round + n_rounds; ++round) {
     co_await collide_round(collider, clients, round);
-    Future<CollisionStatistics> done;
-    report_statistics(collider, done.callback());
-    const CollisionStatistics statistics = co_await done;
-    TESS_CHECK(statistics.n_kept > 0, "no pair of larger boxes was tested");
-    n_kept += statistics.searched ? 0 : 1;
+    co_await add_if_kept(collider, n_kept);
   }
   // The last round is a quarter of the slack outside of the first boxes.
   TESS_CHECK(n_kept == n_rounds - 2, n_kept, " rounds tested pairs that were kept");
@@ -175,10 +180,8 @@ Task collide_two_at_once() {
   std::array<Collider, 2> colliders;
   std::array<ArrayProxy<Client>, 2> clients;
   co_await epoch([&] {
-    for (std::size_t i = 0; i < 2; ++i) {
-      colliders[i] = make_collider({.slack = (1 + 2 * static_cast<double>(i)) * slack});
-      clients[i] = create<Client>(range(2 * n_pes()));
-    }
+    colliders = {make_collider({.slack = slack}), make_collider({.slack = 3 * slack})};
+    for (ArrayProxy<Client>& of_one : clients) of_one = create<Client>(range(2 * n_pes()));
   });
   const BalancerProxy voxels = start_balancing(colliders[0].voxels, {.strategy = "rotate"});
   std::array<std::int32_t, 2> n_kept{};
@@ -187,22 +190,17 @@ Task collide_two_at_once() {
     Task second = collide_round(colliders[1], clients[1], round);
     co_await first;
     co_await second;
-    for (std::size_t i = 0; i < 2; ++i) {
-      Future<CollisionStatistics> done;
-      report_statistics(colliders[i], done.callback());
-      n_kept[i] += (co_await done).searched ? 0 : 1;
-    }
+    for (std::size_t i = 0; i < 2; ++i) co_await add_if_kept(colliders[i], n_kept[i]);
     if (round % 2 != 0) co_await epoch([&] { clients[0].broadcast<&Client::move>(); });
     co_await voxels.round();
   }
+  // The first searches in the rounds after its clients have moved, the second only once.
   const std::int32_t expected = n_pes() == 1 ? n_rounds - 2 : n_rounds / 2;
   TESS_CHECK(n_kept[0] == expected && n_kept[1] == n_rounds - 1, n_kept[0], " and ", n_kept[1],
              " rounds tested pairs that were kept");
   co_await epoch([&] {
-    for (std::size_t i = 0; i < 2; ++i) {
-      colliders[i].destroy();
-      clients[i].destroy();
-    }
+    for (const Collider& collider : colliders) collider.destroy();
+    for (const ArrayProxy<Client>& of_one : clients) of_one.destroy();
   });
 }
 
