@@ -10,16 +10,21 @@
 
 namespace tess::collide {
 
+/// If a number of it is NaN or infinite, or the radius negative, nothing is known of the object: it is
+/// searched by its box.
 struct Capsule {
   Point from;
   Point to;
-  double radius;  ///< not negative; infinite or NaN: nothing is known
+  double radius;
 
   friend bool operator==(const Capsule&, const Capsule&) = default;
 };
 
 /// The capsule of an object of which no capsule is known.
 inline constexpr Capsule unknown_capsule{{}, {}, std::numeric_limits<double>::infinity()};
+
+/// The capsule, or unknown_capsule if nothing is known of the object.
+[[nodiscard]] Capsule checked(const Capsule& capsule) noexcept;
 
 /// A capsule that contains the convex hull of one or more points, whatever is rounded: around the segment
 /// between the two points that are farthest apart. The radius is at most sqrt(3) times the least for

@@ -93,7 +93,7 @@ struct Capsules {
   const void* objects;
   Capsule (*of)(const void* objects, std::size_t i);
 
-  [[nodiscard]] Capsule operator[](std::size_t i) const { return of(objects, i); }
+  [[nodiscard]] Capsule operator[](std::size_t i) const { return checked(of(objects, i)); }
 };
 
 /// Whether most of n objects are much longer than thick, as far as a few of them show.

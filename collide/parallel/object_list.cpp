@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <iterator>
 #include <utility>
 
 namespace tess::collide {
@@ -42,7 +43,7 @@ void ObjectList::check_room(std::size_t n_more, std::size_t n_capsules) const {
 void ObjectList::add_capsules(std::span<const Capsule> capsules) {
   if (capsules.empty() && capsules_.empty()) return;
   capsules_.resize(boxes_.size() - capsules.size(), unknown_capsule);
-  capsules_.insert(capsules_.end(), capsules.begin(), capsules.end());
+  std::transform(capsules.begin(), capsules.end(), std::back_inserter(capsules_), checked);
 }
 
 void ObjectList::set_sources() {

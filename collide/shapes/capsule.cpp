@@ -1,5 +1,8 @@
 #include "collide/capsule.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 namespace tess::collide {
 namespace {
 
@@ -31,6 +34,13 @@ double distance_bound(const Point& p, const Point& from, const Point& to, double
 }
 
 }  // namespace
+
+Capsule checked(const Capsule& capsule) noexcept {
+  bool is_known = capsule.radius >= 0 && std::isfinite(capsule.radius);
+  for (const Point& end : {capsule.from, capsule.to})
+    for (const double x : end) is_known = is_known && std::isfinite(x);
+  return is_known ? capsule : unknown_capsule;
+}
 
 Capsule capsule_around(std::span<const Point> points) noexcept {
   std::size_t from = 0, to = 0;

@@ -280,6 +280,19 @@ TEST_CASE("a piece that is a little larger than its level allows is searched",
                    {.size = {0.03125, 0.03125, 0.03125}, .piece_length = 0.4375}) == 2);
 }
 
+TEST_CASE("an object whose capsule is no capsule is found by its box",
+          "[collide][parallel][pieces]") {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  const Aabb box{{0, 0, 0}, {8, 1, 1}}, above{{0, 0.9, 0}, {0.5, 1, 1}};
+  for (const Capsule& capsule :
+       {Capsule{{0, 0, 0.5}, {8, nan, 0.5}, 0.01}, Capsule{{0, 0, 0.5}, {8, 0, 0.5}, -1},
+        Capsule{{0, 0, 0.5}, {8, 0, 0.5}, nan}})
+    CHECK(n_received({{box, above}, {capsule, unknown_capsule}}, {.piece_length = 1}) == 2);
+  // Of a capsule that is one, the pair is too far away.
+  const Capsule low{{0, 0, 0.5}, {8, 0, 0.5}, 0.01};
+  CHECK(n_received({{box, above}, {low, unknown_capsule}}, {.piece_length = 1}) == 0);
+}
+
 TEST_CASE("capsules are none or one per object, and pieces have a length",
           "[collide][parallel][pieces]") {
   const std::vector<Aabb> boxes(3, Aabb{{0, 0, 0}, {1, 1, 1}});

@@ -62,6 +62,18 @@ std::vector<Triangle> triangles(std::uint64_t seed, const Needles& look) {
   return out;
 }
 
+/// A type whose capsules are made by hand.
+struct OwnCapsule {
+  Triangle shape;
+  Capsule capsule;
+
+  friend Aabb box_of(const OwnCapsule& object) { return box_of(object.shape); }
+  friend bool intersect(const OwnCapsule& a, const OwnCapsule& b, Touching touching) {
+    return intersect(a.shape, b.shape, touching);
+  }
+  friend Capsule capsule_of(const OwnCapsule& object) { return object.capsule; }
+};
+
 using Pairs = std::map<std::pair<std::uint32_t, std::uint32_t>, int>;
 
 template <class A, class B>
@@ -168,6 +180,21 @@ TEST_CASE("offsets and scales lose no pair of long thin triangles", "[thin]") {
     check_thin(triangles(seed, {.n = 60, .length = 1, .scale = 1e-305}), 1e-305);
     check_thin(triangles(seed, {.n = 60, .length = 1, .scale = 1e307}), 1e307);
   }
+}
+
+TEST_CASE("a capsule that is none loses no pair of its object", "[thin]") {
+  std::vector<OwnCapsule> objects;
+  for (const Triangle& shape : triangles(9, {.n = 150})) {
+    Capsule capsule = capsule_of(shape);
+    const std::size_t what = objects.size() % 8, axis = objects.size() / 8 % 3;
+    if (what == 0) capsule.from[axis] = std::numeric_limits<double>::quiet_NaN();
+    if (what == 1) capsule.to[axis] = std::numeric_limits<double>::quiet_NaN();
+    if (what == 2) capsule.to[axis] = std::numeric_limits<double>::infinity();
+    if (what == 3) capsule.radius = -0.1;
+    if (what == 4) capsule.radius = std::numeric_limits<double>::quiet_NaN();
+    objects.push_back({shape, capsule});
+  }
+  check_thin(objects, 0.3);
 }
 
 TEST_CASE("segments, tetrahedra and triangles of float in pieces make each pair once", "[thin]") {
