@@ -34,7 +34,7 @@ struct Join {
   }
 };
 
-struct Relay {
+struct Chain {
   Trial& trial;
   std::uint64_t seed = 0;
   double move_chance = 0, create_chance = 0, end_chance = 0;
@@ -42,11 +42,11 @@ struct Relay {
   std::mutex mutex{};
   std::vector<List> results{};  // inclusive: the last one is the element's own contribution
 };
-Relay* relay = nullptr;
+Chain* chain = nullptr;
 
 void note(List result) {
-  const std::lock_guard lock(relay->mutex);
-  relay->results.push_back(std::move(result));
+  const std::lock_guard lock(chain->mutex);
+  chain->results.push_back(std::move(result));
 }
 
 struct Leg {
@@ -59,14 +59,14 @@ class Racer : public Chare<Racer, Index1> {
   Task run(Leg leg) {
     const int me = index().x;
     const bool mortal = me % 3 != 0;
-    Random random(mix(relay->seed ^ mix(static_cast<std::uint64_t>(leg.number * 1000 + me))));
-    if (random.chance(relay->create_chance)) array()[{relay->n_indices++}].insert();
+    Random random(mix(chain->seed ^ mix(static_cast<std::uint64_t>(leg.number * 1000 + me))));
+    if (random.chance(chain->create_chance)) array()[{chain->n_indices++}].insert();
     std::deque<Future<List>> before;
     std::vector<Given> own;
     for (std::int32_t scan = 0; scan < leg.n_scans; ++scan) {
       const Given mine{me, n_given_++};
       // Equal for all elements.
-      Random kind(mix(relay->seed + static_cast<std::uint64_t>(leg.number * 100 + scan)));
+      Random kind(mix(chain->seed + static_cast<std::uint64_t>(leg.number * 100 + scan)));
       const bool one_by_one = kind.chance(0.3);
       if (kind.chance(0.5)) {
         const auto target = mortal || random.chance(0.3) ? array()[{0}].target<&Racer::placed>()
@@ -88,17 +88,17 @@ class Racer : public Chare<Racer, Index1> {
       }
       firsts_.push_back(first.front());
     }
-    if (random.chance(relay->move_chance)) migrate_to(any_pe(random));
+    if (random.chance(chain->move_chance)) migrate_to(any_pe(random));
     for (std::size_t i = 0; i < before.size(); ++i) {
       List result = co_await before[i];
-      relay->trial.expect(!result.empty() && result.front() == firsts_[i],
+      chain->trial.expect(!result.empty() && result.front() == firsts_[i],
                           "an exclusive scan does not begin with its first value");
       result.erase(result.begin());
       result.push_back(own[i]);
       note(std::move(result));
     }
     firsts_.clear();
-    if (mortal && random.chance(relay->end_chance)) destroy();
+    if (mortal && random.chance(chain->end_chance)) destroy();
   }
   void placed(List result) { note(std::move(result)); }
 
@@ -134,27 +134,27 @@ ArrayProxy<Racer> create_runners(std::int32_t n, std::uint64_t draw) {
 
 /// The results of all scans of a leg, which began with the scan of this number.
 void check_leg(std::int32_t first_scan, std::int32_t n_scans) {
-  std::vector<List> results = std::exchange(relay->results, {});
+  std::vector<List> results = std::exchange(chain->results, {});
   std::map<std::int32_t, std::vector<List>> by_scan;
   for (List& result : results) {
-    relay->trial.expect(result.front().index == 0, "a result lacks the contribution of element 0");
+    chain->trial.expect(result.front().index == 0, "a result lacks the contribution of element 0");
     by_scan[result.front().nth].push_back(std::move(result));
   }
-  relay->trial.expect(by_scan.size() == static_cast<std::size_t>(n_scans), by_scan.size(),
+  chain->trial.expect(by_scan.size() == static_cast<std::size_t>(n_scans), by_scan.size(),
                       " scans have results, not ", n_scans);
   std::set<Given> given;
   for (auto& [scan, of] : by_scan) {
-    relay->trial.expect(scan >= first_scan && scan < first_scan + n_scans, "a result of scan ",
+    chain->trial.expect(scan >= first_scan && scan < first_scan + n_scans, "a result of scan ",
                         scan, " comes late or early");
     std::sort(of.begin(), of.end(),
               [](const List& a, const List& b) { return a.back().index < b.back().index; });
     List all;
     for (const List& result : of) {
       all.push_back(result.back());
-      relay->trial.expect(result == all, "element ", result.back().index, " gets ", result.size(),
+      chain->trial.expect(result == all, "element ", result.back().index, " gets ", result.size(),
                           " contributions of scan ", scan, ", not the ", all.size(),
                           " up to its own");
-      relay->trial.expect(given.insert(result.back()).second, "a contribution has two results");
+      chain->trial.expect(given.insert(result.back()).second, "a contribution has two results");
     }
   }
 }
@@ -176,9 +176,9 @@ Task run_legs(std::int32_t n_runners, std::uint64_t map, std::vector<std::int32_
 }  // namespace
 
 void scans(Trial& trial) {
-  Relay here{trial, trial.random()(), 0.3 * trial.draw(0, 2), 0.2 * trial.draw(0, 2),
+  Chain here{trial, trial.random()(), 0.3 * trial.draw(0, 2), 0.2 * trial.draw(0, 2),
              0.2 * trial.draw(0, 2)};
-  relay = &here;
+  chain = &here;
   const std::int32_t n_runners = trial.draw(1, 30);
   here.n_indices = n_runners;
   std::vector<std::int32_t> legs(static_cast<std::size_t>(trial.draw(1, 4)));
