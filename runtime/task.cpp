@@ -132,6 +132,7 @@ Task::~Task() {
 }
 
 void Task::await_suspend(Handle parent) {
+  TESS_CHECK(handle_.promise().parent == nullptr, "two coroutines await one task");
   handle_.promise().parent = parent;
   suspend(parent, [] { return std::string("a task that it called"); });
 }

@@ -385,6 +385,7 @@ Task write_checkpoint(std::string folder, std::string state_type, std::vector<st
                       CheckpointOptions options) {
   require_main("checkpoint()");
   const OnlyOne only_one(current_pe().runtime());
+  TESS_CHECK(!folder.empty(), "checkpoint() to a path without a name: give a folder");
   TESS_CHECK(options.keep >= 1, "keep: ", options.keep, " checkpoints");
   MainPart main;
   main.state_type = std::move(state_type);

@@ -84,7 +84,8 @@ template <std::integral X>
 }
 }  // namespace detail
 
-/// The hash of an index. It is the same in every process, since homes are computed from it.
+/// The hash of an index. It is the same in every process, since homes are computed from it. Indices that
+/// are equal have equal bytes: without a -0.0, or an unordered container.
 template <class Index>
 struct IndexHash {
   using is_avalanching = void;
@@ -170,7 +171,7 @@ class BlockMap {
   std::uint64_t inverse_ = 0;  // 2^64 divided by the block size, rounded up
 };
 
-/// A dense range of one to six axes. Throws Error for a negative extent.
+/// A dense range of one to six axes. Throws Error for a negative extent, and for more than 2^40 elements.
 template <class... Extent>
 [[nodiscard]] Range range(Extent... extents) {
   static_assert(sizeof...(Extent) >= 1 && sizeof...(Extent) <= 6, "a range has one to six axes");
@@ -180,6 +181,11 @@ template <class... Extent>
       fail(ErrorCode::bad_argument, "range: extent ", extent, " is not within 0 … 2147483647");
     out.extent[static_cast<std::size_t>(out.n_axes++)] = static_cast<std::int32_t>(extent);
   }
+  double n = 1;
+  for (const std::int32_t extent : out.extent) n *= extent;
+  if (n > 0x1p40)
+    fail(ErrorCode::bad_argument, "range: ", n,
+         " elements; at most 2^40 are in a range: give tess::sparse, and insert those that exist");
   return out;
 }
 

@@ -262,6 +262,20 @@ tess::Task future_awaited_twice() {
   (void)co_await news;
 }
 
+tess::Task wait_for(tess::Future<int>& number) {
+  (void)co_await number;
+}
+tess::Task wait_for(tess::Task& task) {
+  co_await task;
+}
+
+tess::Task task_awaited_at_once() {
+  tess::Future<int> number;
+  tess::Task task = wait_for(number);
+  const tess::Task first = wait_for(task);
+  co_await wait_for(task);
+}
+
 tess::Task ask_awaited_twice() {
   const auto all = tess::create<Block>(tess::range(3));
   auto news = all[{1}].ask<&Block::news>();
@@ -361,6 +375,7 @@ const std::map<std::string, std::function<void()>> misuses{
     {"empty_group", [] { tess::GroupProxy<Member>().broadcast<&Member::nothing>(); }},
     {"empty_group_local", [] { tess::GroupProxy<Member>().local().nothing(); }},
     {"future_awaited_twice", [] { const tess::Task task = future_awaited_twice(); }},
+    {"task_awaited_at_once", [] { const tess::Task task = task_awaited_at_once(); }},
     {"ask_awaited_twice", [] { const tess::Task task = ask_awaited_twice(); }},
     {"future_given_two", [] { const tess::Task task = future_given_two(); }},
     {"derived_in_a_pointer", &draw_circle},

@@ -212,6 +212,13 @@ TEST_CASE("rank and index of a range are inverse in row-major order", "[runtime]
   CHECK_THROWS_AS(tess::range(-1), tess::Error);
 }
 
+TEST_CASE("a range has at most 2^40 elements", "[runtime]") {
+  CHECK(tess::range(1 << 20, 1 << 20).size() == std::uint64_t{1} << 40U);
+  CHECK(tess::range(1 << 30, 1 << 30, 0).size() == 0);
+  CHECK_THROWS_WITH(tess::range(1 << 22, 1 << 21, 1 << 21), Catch::Contains("at most 2^40"));
+  CHECK_THROWS_WITH(tess::range(-3), Catch::Contains("extent -3 is not within"));
+}
+
 TEST_CASE("an index prints as a user writes it", "[runtime]") {
   CHECK(tess::index_text(tess::Index1{3}) == "[3]");
   CHECK(tess::index_text(tess::Index3{1, -2, 3}) == "[1,-2,3]");
