@@ -157,7 +157,8 @@ int run(tess::Setup& setup, int argc, char** argv) {
               "mesh around a body: a file, or ball:N, box:N, star:N, torus:N; with --study ball, "
               "box, star or torus");
   line.option("--wall WALL", options.request.wall,
-              "the wall: a side set of OVERSET, or an OBJ, PLY or STL file (default: the cavities "
+              "the wall: a side set of OVERSET (its name, or its number if it has none), or an "
+              "OBJ, PLY or STL file (default: the cavities "
               "of OVERSET)");
   line.option("--field FORMULA", options.problem.field,
               "gaussian, linear, sin, or an expression in x, y, z");

@@ -60,7 +60,8 @@ struct SurfacePoint {
                                     double first, double second, double third);
 
 /// Reads vertices and faces of a Wavefront OBJ file; polygons become fans, texture and normal
-/// indices are ignored. Throws Error(bad_file) naming file and line.
+/// indices are ignored. Coordinates and areas are not checked: validate() does. Throws Error(bad_file)
+/// naming file and line.
 [[nodiscard]] Surface read_obj(const std::string& path);
 
 }  // namespace tess::dn

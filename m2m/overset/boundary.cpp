@@ -82,10 +82,15 @@ std::vector<bool> are_inner(const TetMesh& mesh, const std::vector<Face>& faces)
   return inner;
 }
 
+/// What a side set is chosen by: its name, or its number if it has none.
+std::string name_of(const SideSet& set) {
+  return set.name.empty() ? std::to_string(set.id) : set.name;
+}
+
 /// The keys of the faces of a side set, sorted.
 std::vector<std::array<VertexId, 3>> keys_of(const TetMesh& mesh, const std::string& name) {
   for (const SideSet& set : mesh.side_sets) {
-    if (set.name != name) continue;
+    if (name_of(set) != name) continue;
     std::vector<std::array<VertexId, 3>> keys;
     for (const Side& side : set.entries)
       keys.push_back(face_of(mesh, mesh.tets[static_cast<std::size_t>(side.tet)],
@@ -95,7 +100,7 @@ std::vector<std::array<VertexId, 3>> keys_of(const TetMesh& mesh, const std::str
     return keys;
   }
   std::string known;
-  for (const SideSet& set : mesh.side_sets) known += (known.empty() ? "" : ", ") + set.name;
+  for (const SideSet& set : mesh.side_sets) known += (known.empty() ? "" : ", ") + name_of(set);
   fail(ErrorCode::bad_argument, mesh.name, " has no side set ", name, "; it has ",
        known.empty() ? "none, since only ExodusII files have them: leave the wall out to take the "
                        "cavities, or give the file of a surface"

@@ -100,8 +100,8 @@ void AnyPiece::m2m_give_values(CouplingId id, detail::Giver give, detail::Taker 
   const std::span<const double> values = give->show(*this, id);
   const MeshView mesh = m2m_view();
   const std::size_t n_rows = n_unknowns(mesh, from.setup.source_values);
-  TESS_CHECK(n_rows == 0 || values.size() % n_rows == 0, "a piece with ", n_rows, " ",
-             rows_of(from.setup.source_values), " gives ", values.size(),
+  TESS_CHECK(n_rows == 0 || (!values.empty() && values.size() % n_rows == 0), "a piece with ",
+             n_rows, " ", rows_of(from.setup.source_values), " gives ", values.size(),
              " values: give as many rows, ghosts included");
   from.give(mesh, values, take, [&](collide::OwnerId target, GivenValues given) {
     m2m_send<&AnyPiece::m2m_take>(from.setup.target, target, std::move(given));

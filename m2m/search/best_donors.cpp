@@ -70,13 +70,14 @@ class DonorSearch {
   std::uint64_t n_tested_ = 0;
 };
 
-/// Snaps the points that no tetrahedron holds to the nearest one within the tolerance.
+/// Snaps the points that no tetrahedron holds to the nearest one within the tolerance. Those that are
+/// within rounding of one are among them: another piece of the mesh may hold one that is nearer.
 void snap(const MeshView& mesh, const Cover& cover, std::span<const std::uint32_t> boxes,
           std::span<const Point> points, double tolerance, Best& best) {
   std::vector<std::uint32_t> outside;
   std::vector<Point> left;
   for (std::uint32_t i = 0; i < points.size(); ++i)
-    if (best.candidates[i].status == Status::outside) {
+    if (best.candidates[i].status >= Status::snapped) {
       outside.push_back(i);
       left.push_back(points[i]);
     }

@@ -61,7 +61,9 @@ Surface read_file(const Node& node, const std::string& folder) {
   if (std::filesystem::is_directory(path, unknown))
     node.blame(path + ": is a directory; give the path of a file .obj, .ply or .stl");
   try {
-    return apps::read_surface(path);
+    Surface surface = apps::read_surface(path);
+    tess::dn::validate(surface);
+    return surface;
   } catch (const tess::Error& error) {
     constexpr std::size_t longest = 200;  // it quotes the rest of a line
     std::string_view what = error.what();

@@ -8,19 +8,48 @@
 #include <cstdlib>
 #include <numeric>
 #include <ranges>
+#include <string_view>
 #include <tuple>
 
 namespace tess::dn {
 namespace {
 
-/// Reads "17", "17/3", "17//4" or "-1/…" and moves past it; negative counts from the last vertex.
-std::uint32_t face_vertex(const char*& at, std::size_t n_vertices, const std::string& place) {
+constexpr std::string_view blanks = " \t\r";
+
+/// Reads a line with those that continue it after a backslash, and without its comment. Counts the
+/// lines. False at the end of the file.
+bool next_line(std::istream& file, std::string& line, std::size_t& number) {
+  line.clear();
+  std::string part;
+  for (bool more = true; more;) {
+    if (!std::getline(file, part)) return !line.empty();
+    if (++number == 1 && part.starts_with("\xEF\xBB\xBF")) part.erase(0, 3);  // a byte order mark
+    part.resize(std::min(part.find('#'), part.size()));
+    part.resize(part.find_last_not_of(blanks) + 1);
+    more = part.ends_with('\\');
+    if (more) part.back() = ' ';
+    line += part;
+  }
+  return true;
+}
+
+/// The next word of a line, which it loses; empty at its end.
+std::string take_word(std::string_view& line) {
+  line.remove_prefix(std::min(line.find_first_not_of(blanks), line.size()));
+  const std::string word(line.substr(0, line.find_first_of(blanks)));
+  line.remove_prefix(word.size());
+  return word;
+}
+
+/// Reads "17", "17/3", "17//4" or "-1/…"; negative counts from the last vertex.
+std::uint32_t face_vertex(const std::string& word, std::size_t n_vertices,
+                          const std::string& place) {
   char* end = nullptr;
-  const long long written = std::strtoll(at, &end, 10);
-  if (end == at)
-    fail(ErrorCode::bad_file, place, ": expected a vertex number in a face, found '", at, "'");
-  while (*end != '\0' && *end != ' ' && *end != '\t') ++end;
-  at = end;
+  const long long written = std::strtoll(word.c_str(), &end, 10);
+  if (end == word.c_str() ||
+      std::string_view(end).find_first_not_of("/-0123456789") != std::string::npos ||
+      (*end != '\0' && *end != '/'))
+    fail(ErrorCode::bad_file, place, ": expected a vertex number in a face, found '", word, "'");
   const auto count = static_cast<long long>(n_vertices);
   const long long index = written < 0 ? count + written : written - 1;
   if (index < 0 || index >= count)
@@ -29,14 +58,14 @@ std::uint32_t face_vertex(const char*& at, std::size_t n_vertices, const std::st
   return static_cast<std::uint32_t>(index);
 }
 
-Vec3 vertex(const char* at, const std::string& place) {
+Vec3 vertex(std::string_view line, const std::string& place) {
   std::array<double, 3> value{};
   for (double& v : value) {
+    const std::string word = take_word(line);
     char* end = nullptr;
-    v = std::strtod(at, &end);
-    if (end == at)
-      fail(ErrorCode::bad_file, place, ": a vertex needs three numbers, found '", at, "'");
-    at = end;
+    v = std::strtod(word.c_str(), &end);
+    if (word.empty() || *end != '\0')
+      fail(ErrorCode::bad_file, place, ": a vertex needs three numbers, found '", word, "'");
   }
   return {value[0], value[1], value[2]};
 }
@@ -151,26 +180,22 @@ Surface read_obj(const std::string& path) {
   std::ifstream file = tess::detail::open_file(path, "an OBJ file");
   Surface surface;
   std::string line;
-  for (std::size_t number = 1; std::getline(file, line); ++number) {
-    if (!line.empty() && line.back() == '\r') line.pop_back();
+  for (std::size_t number = 0; next_line(file, line, number);) {
     const auto place = [&] { return text(path, ":", number); };
-    if (line.starts_with("v ")) {
-      surface.vertices.push_back(vertex(line.c_str() + 2, place()));
-    } else if (line.starts_with("f ")) {
-      const char* at = line.c_str() + 2;
+    std::string_view rest = line;
+    const std::string keyword = take_word(rest);
+    if (keyword == "v") {
+      surface.vertices.push_back(vertex(rest, place()));
+    } else if (keyword == "f") {
       std::vector<std::uint32_t> polygon;
-      const auto skip = [&] {
-        while (*at == ' ' || *at == '\t') ++at;
-      };
-      for (skip(); *at != '\0'; skip())
-        polygon.push_back(face_vertex(at, surface.vertices.size(), place()));
+      for (std::string word = take_word(rest); !word.empty(); word = take_word(rest))
+        polygon.push_back(face_vertex(word, surface.vertices.size(), place()));
       if (polygon.size() < 3) fail(ErrorCode::bad_file, place(), ": a face needs three vertices");
       for (std::size_t i = 2; i < polygon.size(); ++i)
         surface.triangles.push_back({polygon[0], polygon[i - 1], polygon[i]});
     }
   }
   if (surface.triangles.empty()) fail(ErrorCode::bad_file, path, ": holds no faces");
-  validate(surface);
   return surface;
 }
 

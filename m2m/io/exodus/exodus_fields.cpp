@@ -33,8 +33,8 @@ class ExodusFields : public FieldReader, private ExodusFile {
     const std::size_t n_components = variables.size();
     std::vector<double> values;
     for (std::size_t c = 0; c < n_components; ++c) {
-      const std::vector<double> column =
-          nodal ? at_vertices(mesh, variables[c], step) : in_elements(field, variables[c], step);
+      const std::vector<double> column = nodal ? at_vertices(mesh, field, variables[c], step)
+                                               : in_elements(field, variables[c], step);
       values.resize(column.size() * n_components);
       for (std::size_t i = 0; i < column.size(); ++i) values[i * n_components + c] = column[i];
     }
@@ -86,15 +86,24 @@ class ExodusFields : public FieldReader, private ExodusFile {
     return stem.substr(0, stem.size() - 1);
   }
 
-  [[nodiscard]] std::vector<double> at_vertices(const TetMesh& mesh, int variable,
-                                                std::size_t step) const {
+  /// Reads the n values of a variable in a block, or at all nodes.
+  void read_values(std::size_t field, int variable, std::size_t step, std::int64_t block,
+                   std::int64_t n, double* values) const {
+    const ex_entity_type type = type_of(fields_[field].place);
+    const int code = ex_get_var(id_, static_cast<int>(step + 1), type, variable, block, n, values);
+    if (code > 0)  // a warning
+      fail(ErrorCode::bad_value, path_, ": variable '", fields_[field].name,
+           "' has a name, but no values; write them, or choose another one");
+    check(code, "ex_get_var");
+  }
+
+  [[nodiscard]] std::vector<double> at_vertices(const TetMesh& mesh, std::size_t field,
+                                                int variable, std::size_t step) const {
     const std::int64_t n = count(EX_INQ_NODES, "number of nodes");
     check_n_points(mesh, n, path_);
     std::vector<double> values(static_cast<std::size_t>(n));
     check_shape(fmt::format("vals_nod_var{}", variable), n);
-    if (n > 0)
-      check(ex_get_var(id_, static_cast<int>(step + 1), EX_NODAL, variable, 1, n, values.data()),
-            "ex_get_var");
+    if (n > 0) read_values(field, variable, step, 1, n, values.data());
     return values;
   }
 
@@ -124,9 +133,7 @@ class ExodusFields : public FieldReader, private ExodusFile {
       check_shape(fmt::format("vals_elem_var{}eb{}", variable, row), block.n_elements);
       const std::size_t first = values.size();
       values.resize(first + static_cast<std::size_t>(block.n_elements));
-      check(ex_get_var(id_, static_cast<int>(step + 1), EX_ELEM_BLOCK, variable, id,
-                       block.n_elements, values.data() + first),
-            "ex_get_var");
+      read_values(field, variable, step, id, block.n_elements, values.data() + first);
     }
     return values;
   }

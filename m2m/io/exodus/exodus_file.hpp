@@ -21,8 +21,9 @@ class ExodusFile {
 
  protected:
   [[noreturn]] void damaged(const char* call, int code) const;
+  /// Also for a warning, a positive code: the library gives one, and no numbers, for what the file lacks.
   void check(int code, const char* call) const {
-    if (code < 0) damaged(call, code);
+    if (code != 0) damaged(call, code);
   }
   [[nodiscard]] std::int64_t inquire(int what) const;
   /// A count that an honest file of this size can have; otherwise the file is damaged.

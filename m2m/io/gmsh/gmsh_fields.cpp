@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <map>
+#include <string>
 #include <utility>
 
 namespace tess::m2m {
@@ -51,6 +52,10 @@ class GmshFields : public FieldReader {
     for (const Section& section : sections_[field])
       if (section.step == step_tag) read(file, section, wanted.n_components, places, values, has);
     const auto missing = std::find(has.begin(), has.end(), false);
+    if (!has.empty() && std::find(has.begin(), has.end(), true) == has.end())
+      fail(ErrorCode::bad_value, path_, ": variable '", wanted.name, "' has no values at step ",
+           step, " (time ", times_[step],
+           "); choose a step at which it has some: ", steps_of(field));
     if (missing != has.end())
       fail(ErrorCode::bad_value, path_, ": variable '", wanted.name, "' has no value for ",
            nodal ? "node " : "element ", list[static_cast<std::size_t>(missing - has.begin())],
@@ -66,6 +71,19 @@ class GmshFields : public FieldReader {
     std::size_t n = 0;      // rows
     int step = 0;           // gmsh's number of the step
   };
+
+  /// The numbers of the steps at which a field has values, as they are counted in the file.
+  [[nodiscard]] std::string steps_of(std::size_t field) const {
+    std::string out;
+    std::size_t step = 0;
+    for (const auto& [tag, time] : time_of_) {
+      const auto is_of_step = [&](const Section& section) { return section.step == tag; };
+      if (std::ranges::any_of(sections_[field], is_of_step))
+        out += (out.empty() ? "" : ", ") + std::to_string(step);
+      ++step;
+    }
+    return out;
+  }
 
   /// Reads the tags of a section, and skips its values.
   void list(GmshScanner& file, FieldPlace place) {

@@ -52,6 +52,9 @@ class GmshReader {
         file_.refuse(
             "has $ParametricNodes; only $Nodes are supported: save it with "
             "-setnumber Mesh.SaveParametric 0");
+      } else if (section == "$NOD") {
+        file_.refuse(
+            "is MSH 1; only 2.2 and 4.1 are supported: convert it with gmsh -save -format msh41");
       } else if (section.size() > 1 && section[0] == '$' && section.size() < 64) {
         file_.skip_to("$End" + section.substr(1));
       } else {

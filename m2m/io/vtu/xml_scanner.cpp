@@ -1,6 +1,8 @@
 #include "m2m/io/vtu/xml_scanner.hpp"
 
 #include <array>
+#include <charconv>
+#include <cstdint>
 #include <utility>
 
 namespace tess::m2m {
@@ -8,11 +10,42 @@ namespace {
 
 constexpr std::string_view blanks = " \t\r\n";
 
+/// Writes a character in UTF-8.
+void append(std::uint32_t character, std::string& out) {
+  if (character < 0x80) {
+    out.push_back(static_cast<char>(character));
+    return;
+  }
+  const int n_more = character < 0x800 ? 1 : character < 0x10000 ? 2 : 3;
+  out.push_back(static_cast<char>((0xFF00U >> (n_more + 1)) | (character >> (6 * n_more))));
+  for (int i = n_more; i-- > 0;)
+    out.push_back(static_cast<char>(0x80U | ((character >> (6 * i)) & 0x3FU)));
+}
+
+/// Reads a number such as "&#39;" or "&#x27;" to the character that it names. Its length, or 0 if the text
+/// does not begin with one.
+std::size_t read_number(std::string_view text, std::string& out) {
+  if (!text.starts_with("&#")) return 0;
+  const std::size_t begin = text.substr(2).starts_with("x") ? 3 : 2;
+  std::uint32_t character = 0;
+  const char* const end = text.data() + text.size();
+  const auto [stop, error] =
+      std::from_chars(text.data() + begin, end, character, begin == 3 ? 16 : 10);
+  if (error != std::errc() || stop == end || *stop != ';' || character == 0 || character > 0x10FFFF)
+    return 0;
+  append(character, out);
+  return static_cast<std::size_t>(stop - text.data()) + 1;
+}
+
 std::string without_entities(std::string_view text) {
   constexpr std::array<std::pair<std::string_view, char>, 5> entities{
       {{"&quot;", '"'}, {"&apos;", '\''}, {"&lt;", '<'}, {"&gt;", '>'}, {"&amp;", '&'}}};
   std::string out;
   for (std::size_t at = 0; at < text.size();) {
+    if (const std::size_t n = read_number(text.substr(at), out); n > 0) {
+      at += n;
+      continue;
+    }
     std::size_t length = 1;
     char c = text[at];
     for (const auto& [entity, meaning] : entities)

@@ -175,8 +175,8 @@ TEST_CASE("errors of an OBJ file name the scene, the key and the file", "[partic
   std::filesystem::create_directory(folder);
   const std::string start = "v 0 0 0\nv 1 0 0\n", path = (folder / "mesh.obj").string();
   const auto [third, message] = GENERATE(table<std::string, std::string>({
-      {"v nan 1 0\nf 1 2 3\n", "vertex 2 of triangle 0 is (nan, 1, 0); remove it"},
-      {"v 0 1e400 0\nf 1 2 3\n", "vertex 2 of triangle 0 is (0, inf, 0); remove it"},
+      {"v nan 1 0\nf 1 2 3\n", "vertex 2 of triangle 0 is (nan, 1, 0), which is not finite"},
+      {"v 0 1e400 0\nf 1 2 3\n", "vertex 2 of triangle 0 is (0, inf, 0), which is not finite"},
       {"v 0 1 0\nf 1 1 1\n", "surface has extent 0"},
       {"v 1 1 1\nv 2 2 2\nf 1 3 4\n", "all 1 triangles are without area"},
       {"v -1e308 1e308 0\nv 1e308 0 0\nf 1 4 3\n", "surface has extent inf"},

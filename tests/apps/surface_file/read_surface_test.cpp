@@ -112,6 +112,33 @@ TEST_CASE("every format keeps all triangles, also degenerate and duplicate ones,
   CHECK(soup(read_surface(scratch.write("A.STL", text_stl(triangles)))) == triangles);
 }
 
+TEST_CASE("an OBJ file may have tabs, indents, comments, continued lines and a byte order mark",
+          "[apps][surface_file]") {
+  const tess::test::Scratch scratch;
+  const std::string plain = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\n";
+  const auto expected = soup(read_surface(scratch.write("plain.obj", plain)));
+  REQUIRE(expected.size() == 2);
+  for (const char* text :
+       {"v\t0\t0\t0\nv\t1 0 0\nv 0 1 0\nv 0 0 1\nf\t1\t2\t3\nf 1 2 4\n",
+        "  v 0 0 0\n\tv 1 0 0\n v 0 1 0\nv 0 0 1 \n  f 1 2 3\n\tf 1 2 4\t\n",
+        "\xEF\xBB\xBFv 0 0 0\nv 1 0 0 # right\nv 0 1 0\nv 0 0 1\nf 1 2 3 # front\n#f 1 2 3\nf 1 2 "
+        "4",
+        "v 0 0 \\\n0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 \\\r\n 2 \\\n 3\nf 1 2 4\\",
+        "v 0 0 0\r\nv 1 0 0\r\nv 0 1 0\r\nv 0 0 1\r\nf 1/2 2/3/4 3//5\r\nf -4 -3 -1\r\n"}) {
+    INFO(text);
+    CHECK(soup(read_surface(scratch.write("a.obj", text))) == expected);
+  }
+}
+
+TEST_CASE("a surface without area, or a very small one, is a surface for a collision",
+          "[apps][surface_file]") {
+  const tess::test::Scratch scratch;
+  for (const char* last : {"v 2 0 0\n", "v 0 1e-170 0\n"})
+    CHECK(soup(read_surface(
+                   scratch.write("a.obj", std::string("v 0 0 0\nv 1 0 0\n") + last + "f 1 2 3\n")))
+              .size() == 1);
+}
+
 TEST_CASE("OBJ and PLY are read in double precision", "[apps][surface_file]") {
   const tess::test::Scratch scratch;
   const std::string x = "500000.123456789";
@@ -161,6 +188,12 @@ TEST_CASE("what is no surface is refused with its name and the reason", "[apps][
   CHECK_THAT(refused("a.obj", ""), Contains("holds no faces"));
   CHECK_THAT(refused("a.obj", "not a mesh\n"), Contains("holds no faces"));
   CHECK_THAT(refused("a.obj", "v 0 0 0\nv 1 0 0\nv 0 nan 0\nf 1 2 3\n"), Contains("vertex 2"));
+  const std::string corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+  for (const char* face : {"1.5 2 3", "1 2 3/a", "1x 2 3", "1 2 three"})
+    CHECK_THAT(refused("a.obj", corners + "f " + face + "\n"),
+               Contains(":4: expected a vertex number in a face"));
+  CHECK_THAT(refused("a.obj", "v 0 0\nf 1 1 1\n"), Contains(":1: a vertex needs three numbers"));
+  CHECK_THAT(refused("a.obj", "v 0 0,5 0\nf 1 1 1\n"), Contains("found '0,5'"));
   CHECK_THAT(refused("a.ply", "solid\n"), Contains("not a PLY file"));
   CHECK_THAT(refused("a.ply", head + faces + "0 0 0\n1 0 0\n0 nan 0\n3 0 1 2\n"),
              Contains("vertex 2 of triangle 0") && Contains("not finite"));

@@ -265,7 +265,7 @@ TEST_CASE("scalars that are no vector stay apart", "[m2m][io]") {
   CHECK(file.vertex_field(mesh, "U", 0).values.size() == 3 * mesh.n_points());
 }
 
-TEST_CASE("a variable of other dimensions than ExodusII defines is refused, also in NetCDF-4",
+TEST_CASE("a variable without values, or of other dimensions than ExodusII defines, is refused",
           "[m2m][io]") {
   const Scratch scratch;
   const std::string path = scratch.path("vector.exo");
@@ -280,7 +280,7 @@ TEST_CASE("a variable of other dimensions than ExodusII defines is refused, also
   ex_put_conn(id, EX_ELEM_BLOCK, 7, vertices.data(), nullptr, nullptr);
   const double time = 0;
   ex_put_time(id, 1, &time);
-  // As meshio writes a scalar p and a vector u, whose dimensions have names of its own.
+  // As meshio writes a scalar p and a vector u, whose dimensions have names of its own; and a name.
   int n_variables = 0, n_letters = 0, steps = 0, n_points = 0, n_components = 0;
   int names = 0, scalar = 0, vector = 0;
   const auto define = [&](const char* name, nc_type type, std::initializer_list<int> shape) {
@@ -291,7 +291,7 @@ TEST_CASE("a variable of other dimensions than ExodusII defines is refused, also
   };
   REQUIRE(nc_redef(id) == NC_NOERR);
   REQUIRE(nc_inq_dimid(id, "time_step", &steps) == NC_NOERR);
-  REQUIRE(nc_def_dim(id, "num_nod_var", 2, &n_variables) == NC_NOERR);
+  REQUIRE(nc_def_dim(id, "num_nod_var", 3, &n_variables) == NC_NOERR);
   REQUIRE(nc_def_dim(id, "letters", 33, &n_letters) == NC_NOERR);
   REQUIRE(nc_def_dim(id, "dim_nod_var00", 4, &n_points) == NC_NOERR);
   REQUIRE(nc_def_dim(id, "dim_nod_var11", 3, &n_components) == NC_NOERR);
@@ -300,11 +300,12 @@ TEST_CASE("a variable of other dimensions than ExodusII defines is refused, also
   vector = define("vals_nod_var2", NC_DOUBLE, {steps, n_points, n_components});
   REQUIRE(nc_enddef(id) == NC_NOERR);
   const std::array<std::size_t, 3> first{}, one_step{1, 4, 3};
-  std::array<char, 66> letters{};
+  std::array<char, 99> letters{};
   letters[0] = 'p';
   letters[33] = 'u';
-  const std::array<std::size_t, 2> both{2, 33};
-  REQUIRE(nc_put_vara_text(id, names, first.data(), both.data(), letters.data()) == NC_NOERR);
+  letters[66] = 'q';
+  const std::array<std::size_t, 2> all{3, 33};
+  REQUIRE(nc_put_vara_text(id, names, first.data(), all.data(), letters.data()) == NC_NOERR);
   REQUIRE(nc_put_vara_double(id, scalar, first.data(), one_step.data(), x.data()) == NC_NOERR);
   const std::array<double, 12> u{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12};
   REQUIRE(nc_put_vara_double(id, vector, first.data(), one_step.data(), u.data()) == NC_NOERR);
@@ -314,6 +315,8 @@ TEST_CASE("a variable of other dimensions than ExodusII defines is refused, also
   CHECK(file.vertex_field(mesh, "p", 0).values == std::vector<double>(x.begin(), x.end()));
   CHECK_THAT(message_of([&] { (void)file.vertex_field(mesh, "u", 0); }),
              Catch::Contains(path + ": variable vals_nod_var2 is not 4 numbers per step"));
+  CHECK_THAT(message_of([&] { (void)file.vertex_field(mesh, "q", 0); }),
+             Catch::Contains(path + ": variable 'q' has a name, but no values"));
 }
 
 TEST_CASE("gmsh's data at nodes and elements are read by name and step, in any order of tags",
@@ -356,7 +359,8 @@ TEST_CASE("gmsh's data at nodes and elements are read by name and step, in any o
         CHECK(file.tet_field(read, "part", 0).values[47] == 47.0 / 3);
         CHECK_THAT(
             message_of([&] { (void)file.vertex_field(read, "a flow", 1); }),
-            Catch::Contains("variable 'a flow' has no value for node 3 at step 1 (time 1.5"));
+            Catch::Contains("variable 'a flow' has no values at step 1 (time 1.5); choose a step "
+                            "at which it has some: 0"));
       }
     }
   }

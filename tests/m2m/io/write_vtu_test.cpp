@@ -229,6 +229,21 @@ TEST_CASE("every encoding of VTU gives the same mesh and fields", "[m2m][io]") {
   }
 }
 
+TEST_CASE("names in VTU may have numbers of characters", "[m2m][io]") {
+  const Scratch scratch;
+  const TetMesh mesh = kuhn_mesh({1});
+  Cells cells = cells_of(mesh);
+  cells.at_points = awkward_field("NAME", mesh.n_points(), 1, 1);
+  const std::string text = vtu_of(cells);
+  const std::size_t at = text.find("NAME");
+  for (const auto& [written, name] : {std::pair("it&#39;s", "it's"),
+                                      {"&#xE9;&#x20AC;&#128512;", "\u00e9\u20ac\U0001f600"},
+                                      {"&#;&#x;&#0;&#1114112;&#39", "&#;&#x;&#0;&#1114112;&#39"}}) {
+    const std::string path = scratch.write("named.vtu", std::string(text).replace(at, 4, written));
+    CHECK(FieldFile(path).vertex_field(mesh, name, 0).values.size() == mesh.n_points());
+  }
+}
+
 TEST_CASE("solids of VTU are split, surfaces skipped, pieces joined, and fields follow",
           "[m2m][io]") {
   const Scratch scratch;

@@ -187,6 +187,37 @@ TEST_CASE("the narrow phase finds the best tetrahedron of each point among all",
   }
 }
 
+TEST_CASE("a point snaps to the same tetrahedron whether one piece has all or each has one",
+          "[m2m]") {
+  // The points are within rounding of the first one, within the tolerance of both, and nearer to the second.
+  constexpr double gap = 1.2e-11;
+  const std::vector<Point> corners{
+      {0, 0, 0},       {1, 0, 0},         {0, 1, 0},         {0.3, 0.3, -1},
+      {0.3, 0.3, gap}, {0.301, 0.3, gap}, {0.3, 0.301, gap}, {0.3003, 0.3003, 0.001}};
+  const std::vector<Tet> tets{{0, 1, 2, 3}, {4, 5, 6, 7}};
+  const std::vector<GlobalId> ids{1, 0};
+  const std::vector<Point> points{{0.3002, 0.3002, 8e-12}, {0.30025, 0.3002, 7e-12}};
+  const auto snapped = [&](std::size_t first, std::size_t n) {
+    const MeshView view{
+        corners, std::span(tets).subspan(first, n), {}, std::span(ids).subspan(first, n), 0};
+    const Cover cover = cover_tets(view.points, view.tets, 1e-9);
+    std::vector<std::uint32_t> all(cover.boxes.size());
+    std::iota(all.begin(), all.end(), 0U);
+    return best_donors(view, cover, all, points, 1e-9);
+  };
+  const BestDonors whole = snapped(0, 2), alone = snapped(1, 1);
+  REQUIRE(whole.points.size() == points.size());
+  REQUIRE(alone.points.size() == points.size());
+  REQUIRE(best_donors({corners, std::span(tets).first(1), {}, std::span(ids).first(1), 0},
+                      cover_tets(corners, std::span(tets).first(1)), std::vector<std::uint32_t>{0},
+                      points)
+              .points.size() == points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    CHECK(whole.candidates[i].tet == 0);
+    CHECK(whole.donors[i].weights == alone.donors[i].weights);
+  }
+}
+
 TEST_CASE("the narrow phase looks only at the boxes of the cover that it is given", "[m2m]") {
   const TetMesh mesh = read_mesh("kuhn:6");
   std::vector<GlobalId> ids(mesh.n_tets());
