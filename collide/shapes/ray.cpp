@@ -8,8 +8,8 @@
 namespace tess::collide {
 namespace {
 
+using shapes::ratio;
 using shapes::sign_of;
-using shapes::value_of;
 using shapes::way;
 
 constexpr Point zero{};
@@ -68,7 +68,7 @@ std::optional<double> hit(const Triangle& object, const Ray& ray) noexcept {
   const int side = shapes::orient3d(a, b, c, o);
   if (side == turn) return std::nullopt;  // the plane is behind
   if (side == 0) return 0;
-  return shapes::ratio(
+  return ratio(
       [&](auto number) {
         return determinant(number, {a, b}, {a, c}, {o, a});
       },
@@ -94,7 +94,9 @@ std::optional<double> hit(const Sphere& object, const Ray& ray) noexcept {
   };
   if (sign_of(outside2) <= 0) return 0;
   if (sign_of(ahead) <= 0 || sign_of(discriminant) < 0) return std::nullopt;
-  return value_of(outside2) / (value_of(ahead) + std::sqrt(value_of(discriminant)));
+  // outside2 / (ahead + sqrt(discriminant)), of ratios that stay in the range of a double.
+  return ratio(outside2, ahead) /
+         (1 + std::sqrt(ratio(discriminant, [&](auto n) { return ahead(n) * ahead(n); })));
 }
 
 std::optional<double> hit(const Tetrahedron& object, const Ray& ray) noexcept {

@@ -55,10 +55,4 @@ template <class Over, class Under>
   return ExactNumber::quotient(over(exact), under(exact));
 }
 
-/// The value of a formula to a relative error below 2^-44.
-template <class Formula>
-[[nodiscard]] double value_of(const Formula& formula) noexcept {
-  return ratio(formula, [](auto number) { return number(1); });
-}
-
 }  // namespace tess::collide::shapes

@@ -51,11 +51,38 @@ bool agree(const Object& object, const Ray& ray) {
   return !found || abs(Rational(*found) - *expected) <= *expected * Rational(0x1p-42);
 }
 
-/// Scaled by powers of two: the shape's, and another for the direction. The answer follows exactly.
-Triangle scaled(Triangle t, int power, double offset) {
-  for (Point& p : t.corners)
-    for (double& x : p) x = std::ldexp(x, power) + offset;
-  return t;
+bool agree(const Sphere& ball, const Ray& ray) {
+  const Exact d = exact(ray.direction), w = exact(ball.centre) - exact(ray.from);
+  const Rational r(ball.radius), speed2 = dot(d, d), ahead = dot(d, w), outside = dot(w, w) - r * r;
+  const bool expected = outside <= 0 || (ahead > 0 && ahead * ahead >= speed2 * outside);
+  const auto found = hit(ball, ray);
+  if (found.has_value() != expected) return false;
+  if (!found || outside <= 0) return !found || *found == 0;
+  if (!std::isfinite(*found)) return false;
+  const auto is_before = [&](const Rational& t) {
+    return t * speed2 <= ahead && t * (t * speed2 - 2 * ahead) + outside >= 0;
+  };
+  const Rational t(*found);
+  return is_before(t * Rational(1 - 0x1p-42)) && !is_before(t * Rational(1 + 0x1p-42));
+}
+
+/// Scaled by powers of two: the shape's, and another for the direction. The answer follows.
+Point scaled(Point p, int power, double offset = 0) {
+  for (double& x : p) x = std::ldexp(x, power) + offset;
+  return p;
+}
+template <class Shape>
+Shape scaled(Shape shape, int power, double offset = 0) {
+  for (Point& p : shape.corners) p = scaled(p, power, offset);
+  return shape;
+}
+struct Powers {
+  explicit Powers(SmallPoints& random)
+      : place(int(random.below(1001)) - 500), speed(int(random.below(1001)) - 500) {}
+  int place, speed;
+};
+Ray scaled(const Ray& ray, const Powers& powers) {
+  return {scaled(ray.from, powers.place), scaled(ray.direction, powers.speed)};
 }
 
 }  // namespace
@@ -80,13 +107,15 @@ TEST_CASE("rays meet triangles and boxes as rational numbers say, at edges and c
     REQUIRE(agree(t, ray));
     const Aabb box = merged(box_of(random.point(size)), box_of(t.corners[1]));
     REQUIRE(agree(box, ray));
+    const Powers powers(random);
+    REQUIRE(agree(scaled(t, powers.place), scaled(ray, powers)));
+    REQUIRE(agree(Aabb{scaled(box.lo, powers.place), scaled(box.hi, powers.place)},
+                  scaled(ray, powers)));
     n_hits += hit(t, ray) ? 1 : 0;
     n_box_hits += hit(box, ray) ? 1 : 0;
     if (i % 7 == 0) continue;
     for (const auto& [power, offset] : {std::pair{-30, 0.0}, {30, 0.0}, {0, 1e12}}) {
-      Ray other = ray;
-      for (double& x : other.from) x = std::ldexp(x, power) + offset;
-      for (double& x : other.direction) x = std::ldexp(x, power);
+      const Ray other{scaled(ray.from, power, offset), scaled(ray.direction, power)};
       REQUIRE(hit(scaled(t, power, offset), other) == hit(t, ray));
     }
   }
@@ -103,21 +132,15 @@ TEST_CASE("rays meet balls at the root of the quadratic, and decide tangents exa
     Ray ray{random.point(8), random.point(8)};
     for (std::size_t k = 0; k < 3; ++k) ray.direction[k] -= ray.from[k];
     if (ray.direction == Point{}) continue;
-    const Exact d = exact(ray.direction), w = exact(ball.centre) - exact(ray.from);
-    const Rational r2(ball.radius * ball.radius);
-    const Rational ahead = dot(d, w), outside = dot(w, w) - r2;
-    const Rational discriminant = ahead * ahead - dot(d, d) * outside;
-    const bool expected = outside <= 0 || (ahead > 0 && discriminant >= 0);
-    const auto found = hit(ball, ray);
-    REQUIRE(found.has_value() == expected);
-    if (!found) continue;
-    const double root =
-        outside <= 0 ? 0
-                     : (static_cast<double>(ahead) - std::sqrt(static_cast<double>(discriminant))) /
-                           static_cast<double>(dot(d, d));
-    REQUIRE(*found == Approx(root).epsilon(1e-12).margin(1e-13));
+    INFO(i);
+    REQUIRE(agree(ball, ray));
+    const Powers powers(random);
+    REQUIRE(agree(Sphere{scaled(ball.centre, powers.place), std::ldexp(ball.radius, powers.place)},
+                  scaled(ray, powers)));
+    if (!hit(ball, ray)) continue;
     ++n_hits;
-    n_tangents += discriminant == 0 ? 1 : 0;
+    const Exact d = exact(ray.direction), off = cross(d, exact(ball.centre) - exact(ray.from));
+    n_tangents += dot(off, off) == Rational(ball.radius * ball.radius) * dot(d, d) ? 1 : 0;
   }
   CHECK(n_hits > 300);
   CHECK(n_tangents > 5);
@@ -147,6 +170,10 @@ TEST_CASE("a ray that meets a tetrahedron meets it where it enters", "[collide][
     }
     if (intersect(t, ray.from, Touching::counts)) expected = 0;
     REQUIRE(abs(Rational(*found) - *expected) <= *expected * Rational(0x1p-42));
+    const Powers powers(random);
+    const auto other = hit(scaled(t, powers.place), scaled(ray, powers));
+    REQUIRE(other);
+    REQUIRE(std::ldexp(*other, powers.speed - powers.place) == Approx(*found).epsilon(0x1p-41));
   }
   CHECK(n_hits > 200);
 }
