@@ -116,7 +116,8 @@ class Index {
   [[nodiscard]] std::vector<std::uint32_t> within(const Point& p, double radius) const;
 
   /// The `k` nearest objects (fewer if there are no more), near ones first. Distances are rounded;
-  /// those that are equal then are equal here.
+  /// those that are equal then are equal here: also those below 1e-162 or above 1e154, whose squares
+  /// are zero or infinite.
   [[nodiscard]] std::vector<Neighbour> nearest(const Point& p, std::size_t k) const;
 
   /// The object that a ray meets first, if it meets any.

@@ -28,6 +28,13 @@ int crossing(const Triangle& t, const Point& p) noexcept {
   return shapes::orient3d(a, b, c, p) == -turn ? turn : 0;
 }
 
+/// Whether no coordinate of `p` is further than `length` outside of the box.
+bool is_within(const Aabb& box, const Point& p, double length) noexcept {
+  for (std::size_t k = 0; k < 3; ++k)
+    if (box.lo[k] - p[k] > length || p[k] - box.hi[k] > length) return false;
+  return true;
+}
+
 struct Edge {
   Point low, high;         // in lexicographic order
   int direction;           // 1 from low to high
@@ -80,13 +87,21 @@ int ClosedModel::winding_number(const Point& p) const {
 std::optional<Penetration> ClosedModel::penetration(const Point& p) const {
   if (winding_number(p) == 0) return std::nullopt;
   const Neighbour nearest = triangles_.nearest(p, 1).front();
-  const Point offset = offset_to(triangles_.object(nearest.object), p);
-  const double depth = std::hypot(offset[0], offset[1], offset[2]);
-  if (depth == 0) return std::nullopt;
-  Penetration out{depth, p, offset, nearest.object};
+  Penetration out{HUGE_VAL, p, {}, nearest.object};
+  const auto look_at = [&](std::uint32_t triangle, const Triangle& t) {
+    const Point way = offset_to(t, p);
+    const double depth = std::hypot(way[0], way[1], way[2]);
+    if (std::tie(depth, triangle) <= std::tie(out.depth, out.triangle))
+      out = {depth, p, way, triangle};
+  };
+  look_at(nearest.object, triangles_.object(nearest.object));
+  // A squared distance beyond these may have lost which triangle is nearest.
+  if (nearest.distance2 < 1e-290 || nearest.distance2 == HUGE_VAL)
+    triangles_.for_each([&](const Aabb& box) { return is_within(box, p, out.depth); }, look_at);
+  if (out.depth == 0) return std::nullopt;
   for (std::size_t k = 0; k < 3; ++k) {
-    out.nearest[k] += offset[k];
-    out.direction[k] /= depth;
+    out.nearest[k] += out.direction[k];
+    out.direction[k] /= out.depth;
   }
   return out;
 }

@@ -51,23 +51,6 @@ Segment edge(const Triangle& t, std::size_t i) noexcept {
   return {t.corners[i], t.corners[(i + 1) % 3]};
 }
 
-/// The edge on which the nearest point is, if it is not on the face.
-struct NearestEdge {
-  Segment edge{};
-  double distance2 = HUGE_VAL;
-};
-
-NearestEdge nearest_edge(const Triangle& t, const std::array<int, 3>& sides,
-                         const Point& p) noexcept {
-  NearestEdge nearest{edge(t, 0)};
-  for (std::size_t i = 0; i < 3; ++i) {
-    if (!shapes::may_be_on_edge(sides, i)) continue;
-    const double d = distance2(edge(t, i), p);
-    if (d < nearest.distance2) nearest = {edge(t, i), d};
-  }
-  return nearest;
-}
-
 }  // namespace
 
 double distance2(const Point& object, const Point& p) noexcept {
@@ -98,7 +81,12 @@ double distance2(const Segment& object, const Point& p) noexcept {
 
 double distance2(const Triangle& object, const Point& p) noexcept {
   const std::array<int, 3> sides = shapes::edge_sides(object.corners, p);
-  if (!shapes::is_over_face(sides)) return nearest_edge(object, sides, p).distance2;
+  if (!shapes::is_over_face(sides)) {
+    double least = HUGE_VAL;
+    for (std::size_t i = 0; i < 3; ++i)
+      if (shapes::may_be_on_edge(sides, i)) least = std::min(least, distance2(edge(object, i), p));
+    return least;
+  }
   const auto& [a, b, c] = object.corners;
   return ratio(
       [&](auto number) {
@@ -128,7 +116,20 @@ double distance2(const Tetrahedron& object, const Point& p) noexcept {
 
 Point offset_to(const Triangle& triangle, const Point& p) noexcept {
   const std::array<int, 3> sides = shapes::edge_sides(triangle.corners, p);
-  if (!shapes::is_over_face(sides)) return offset_to(nearest_edge(triangle, sides, p).edge, p);
+  if (!shapes::is_over_face(sides)) {
+    // By lengths, which do not leave the range of a double as their squares do.
+    Point nearest{};
+    double least = HUGE_VAL;
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (!shapes::may_be_on_edge(sides, i)) continue;
+      const Point offset = offset_to(edge(triangle, i), p);
+      const double length = std::hypot(offset[0], offset[1], offset[2]);
+      if (length > least) continue;
+      least = length;
+      nearest = offset;
+    }
+    return nearest;
+  }
   const auto& [a, b, c] = triangle.corners;
   const auto normal = [&](auto number) { return cross(way(number, a, b), way(number, a, c)); };
   return {

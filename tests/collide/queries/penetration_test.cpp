@@ -84,8 +84,15 @@ ClosedModel model_of(const std::vector<Triangle>& triangles) {
 }  // namespace
 
 TEST_CASE("in a box the way out is the shortest to a face", "[collide][queries]") {
-  for (const auto& [scale, offset] :
-       {std::pair{1.0, 0.0}, {1.0, 1e12}, {0x1p-30, 0.0}, {0x1p30, 0.0}, {0x1p-300, 0.0}}) {
+  for (const auto& [scale, offset] : {std::pair{1.0, 0.0},
+                                      {1.0, 1e12},
+                                      {0x1p-30, 0.0},
+                                      {0x1p30, 0.0},
+                                      {0x1p-300, 0.0},
+                                      {0x1p-540, 0.0},
+                                      {0x1p-1000, 0.0},
+                                      {0x1p510, 0.0},
+                                      {0x1p1000, 0.0}}) {
     const auto place = [&, s = scale, o = offset](double x, double y, double z) {
       return Point{o + s * x, o + s * y, o + s * z};
     };
@@ -104,7 +111,7 @@ TEST_CASE("in a box the way out is the shortest to a face", "[collide][queries]"
           REQUIRE(std::abs(d[0]) + std::abs(d[1]) + std::abs(d[2]) == 1);
           const Point q = place(x + depth * d[0], y + depth * d[1], z + depth * d[2]);
           REQUIRE(found->nearest == q);
-          REQUIRE(distance2(surface[found->triangle], q) == 0);
+          REQUIRE(offset_to(surface[found->triangle], q) == Point{});
         }
   }
 }
@@ -177,6 +184,15 @@ TEST_CASE("a point one part in 1e15 below a face has a depth and a direction",
   CHECK(found->depth == 1 - just_below);
   CHECK(found->direction == Point{0, 0, 1});
   CHECK_FALSE(model.penetration({0.3, 0.4, 1}));
+}
+
+TEST_CASE("near an edge the nearer face counts, though the squares of both depths are zero",
+          "[collide][queries]") {
+  const ClosedModel model = model_of(box_surface({0, 0, 0}, {1, 1, 1}));
+  const auto found = model.penetration({1e-170, 1e-180, 0.3});
+  REQUIRE(found);
+  CHECK(found->depth == 1e-180);
+  CHECK(found->direction == Point{0, -1, 0});
 }
 
 TEST_CASE("only corners of the triangles that were named are tested, each once",

@@ -74,6 +74,17 @@ TEST_CASE("distances to triangles and segments have a relative error below 2^-43
   }
 }
 
+TEST_CASE("the way to the nearest edge is found where squares of lengths are zero or infinite",
+          "[collide][shapes]") {
+  for (const double unit : {0x1p-600, 1.0, 0x1p600}) {
+    const auto at = [&](double x, double y) { return Point{x * unit, y * unit, 0}; };
+    const Triangle t{{at(0, 0), at(8, 0), at(8, 8)}};
+    CHECK(offset_to(t, at(9, 5)) == at(-1, 0));
+    CHECK(offset_to(t, at(1, 3)) == at(1, -1));
+    CHECK(offset_to(t, at(-3, -1)) == at(3, 1));
+  }
+}
+
 TEST_CASE("distances to boxes, balls, points and tetrahedra", "[collide][shapes]") {
   const Point p{4, 6, 3};
   CHECK(distance2(Point{1, 2, 3}, p) == 25);
