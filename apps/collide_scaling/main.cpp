@@ -49,24 +49,27 @@ int study(int argc, char** argv) {
               "weak: as many triangles on each PE; strong: one crowd on more and more PEs")
       .one_of({"weak", "strong"});
   line.option("--pes", pes, "PEs of the machines (1,4,16,64,256,1024,1500; strong 1,4,16,64,256)")
-      .separated_by(',');
-  line.option("--triangles", n_triangles, "per PE (65536), or of the crowd (262144)");
+      .separated_by(',')
+      .between(1, 1 << 20);
+  line.option("--triangles", n_triangles, "per PE (65536), or of the crowd (262144)")
+      .between(2048, std::int64_t{1} << 32);
   line.option("--steps", steps, "steps, of which the first does not count (4; strong 60)")
       .between(2, 100000);
   line.option("--thinned", thinned,
-              "weak: one of so many triangles is there, at so many times the cost: 1, 4, 16 "
+              "weak: one of so many triangles is there, at so many times the cost "
               "(default: 4 for more than 128 million triangles)")
-      .between(1, 64);
+      .one_of({"1", "4", "16"});
   line.option("--balance STRATEGY", balances, "strategies, or none (strong: none,greedy_refine)")
       .separated_by(',');
   line.option("--work", work,
               "model: a fixed time per message and per pair; measured: processor time of all")
       .one_of({"measured", "model"});
-  line.option("--message-ns", given.message_ns, "of a PE per message, in the model");
+  line.option("--message-ns", given.message_ns, "of a PE per message, in the model")
+      .between(0, 1'000'000'000);
   line.option("--pair-ns", given.ns_per_pair,
               "of a PE per pair, in the model (default: measured now, on one PE)")
       .positive();
-  line.option("--latency-ns", given.latency_ns, "of a message");
+  line.option("--latency-ns", given.latency_ns, "of a message").between(0, 1'000'000'000);
   line.option("--bandwidth", given.bandwidth, "bytes per second").positive();
   line.option("--per-process", given.per_process, "PEs per process").between(1, 4096);
   line.option("--out PREFIX", out, "write PREFIX.svg and PREFIX.csv");

@@ -138,6 +138,11 @@ crowd=("$bin/collide_scaling" --study strong --pes 1 --triangles 2048)
 refuses "no balance strategy 'gredy'" "${crowd[@]}" --balance gredy
 refuses "--steps 5: greedy_refine balances after every 5 steps" "${crowd[@]}" --steps 5
 refuses "--pair-ns 3: --work measured has no cost per pair" "${crowd[@]}" --work measured --pair-ns 3
+refuses "--pes: Value 0 not in range" "$bin/collide_scaling" --pes 1,0
+refuses "--triangles: Value 0 not in range" "$bin/collide_scaling" --pes 1 --triangles 0
+refuses "--thinned: 3 not in {1,4,16}" "${crowd[@]}" --thinned 3
+refuses "--message-ns: Value -1 not in range" "${crowd[@]}" --message-ns=-1
+refuses "--latency-ns: Value -1 not in range" "${crowd[@]}" --latency-ns=-1
 refuses "--out $scratch/missing/x.svg: cannot be written" "${crowd[@]}" --out "$scratch/missing/x"
 
 scaling=("$bin/m2m_scaling" --pes 1)
