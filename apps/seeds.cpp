@@ -3,6 +3,7 @@
 #include "runtime/core/error.hpp"
 
 #include <charconv>
+#include <limits>
 
 namespace apps {
 
@@ -14,6 +15,9 @@ Seeds parse_seeds(const std::string& given) {
     const auto [at, error] = std::from_chars(given.data() + from, end, value);
     if (error != std::errc() || at != end)
       tess::fail(tess::ErrorCode::bad_argument, "--seeds: ", given, " is not of the form FROM:TO");
+    if (value == std::numeric_limits<std::uint64_t>::max())  // a loop over it would not end
+      tess::fail(tess::ErrorCode::bad_argument, "--seeds: ", given, ": seeds are less than ",
+                 value);
     return value;
   };
   if (colon == std::string::npos) return {number(0, given.size()), number(0, given.size())};

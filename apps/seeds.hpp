@@ -10,7 +10,8 @@ struct Seeds {
   std::uint64_t first = 0, last = 0;
 };
 
-/// "FROM:TO", both included, or one seed. Throws tess::Error (bad_argument) otherwise.
+/// "FROM:TO", both included and less than 2^64 - 1, or one seed. Throws tess::Error (bad_argument)
+/// otherwise.
 [[nodiscard]] Seeds parse_seeds(const std::string& given);
 
 }  // namespace apps
