@@ -24,5 +24,4 @@ endif()
 if(TESS_APPS)
   find_package(Catch2 2.13 REQUIRED)
   find_package(CLI11 REQUIRED)
-  find_package(assimp REQUIRED)  # files of triangles
 endif()

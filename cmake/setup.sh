@@ -15,7 +15,7 @@ packages=(
   openmpi-bin libopenmpi-dev libhwloc-dev libboost1.81-dev
   libfmt-dev libcli11-dev nlohmann-json3-dev catch2
   libexodusii-dev libtrilinos-zoltan-dev libscotch-dev zlib1g-dev libbrotli-dev
-  libassimp-dev gmsh gnuplot-nox
+  gmsh gnuplot-nox
 )
 refuse() {
   echo "setup: error: $*" >&2

@@ -1,37 +1,117 @@
+// The STL format (3D Systems, "Stereolithography Interface Specification", 1988). Binary: a header of
+// 80 bytes, the number of facets, and of each facet its normal, three vertices and two more bytes. As
+// text: a line per word, such as "vertex X Y Z"; files of capital letters and of several solids exist.
 #include "apps/surface_file/formats.hpp"
 #include "runtime/base/open_file.hpp"
 #include "runtime/core/error.hpp"
 
-#include <assimp/Importer.hpp>
-#include <assimp/scene.h>
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cctype>
+#include <charconv>
+#include <cstring>
+#include <iterator>
+#include <sstream>
 
 namespace apps {
+namespace {
+using tess::ErrorCode;
+using tess::dn::Surface;
 
-tess::dn::Surface read_stl(const std::string& path) {
-  (void)tess::detail::open_file(path, "an STL file");  // its errors are clearer
-  Assimp::Importer importer;
-  const aiScene* scene = importer.ReadFile(path, 0);  // 0: nothing is merged, split or left out
-  if (scene == nullptr)
-    tess::fail(tess::ErrorCode::bad_file, path, ": is not an STL file, or is truncated (",
-               importer.GetErrorString(), ")");
-  tess::dn::Surface surface;
-  for (unsigned m = 0; m < scene->mNumMeshes; ++m) {
-    const aiMesh& mesh = *scene->mMeshes[m];
-    const auto first = static_cast<std::uint32_t>(surface.vertices.size());
-    for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
-      const aiVector3D& p = mesh.mVertices[v];
-      surface.vertices.push_back({p.x, p.y, p.z});
-    }
-    for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
-      const aiFace& face = mesh.mFaces[f];
-      if (face.mNumIndices != 3)
-        tess::fail(tess::ErrorCode::bad_file, path, ": facet ", surface.triangles.size(), " has ",
-                   face.mNumIndices, " vertices instead of three");
-      surface.triangles.push_back(
-          {first + face.mIndices[0], first + face.mIndices[1], first + face.mIndices[2]});
-    }
+constexpr std::size_t head = 84, per_facet = 50;
+
+/// Of the last three vertices.
+void add_triangle(Surface& surface) {
+  const auto end = static_cast<std::uint32_t>(surface.vertices.size());
+  surface.triangles.push_back({end - 3, end - 2, end - 1});
+}
+
+Surface read_binary(const std::string& bytes, std::uint32_t n_facets) {
+  static_assert(std::endian::native == std::endian::little, "as the numbers of the file");
+  Surface surface;
+  for (std::size_t t = 0; t < n_facets; ++t) {
+    std::array<std::array<float, 3>, 4> facet{};  // its normal first
+    std::memcpy(&facet, bytes.data() + head + t * per_facet, sizeof(facet));
+    for (std::size_t i = 1; i < 4; ++i)
+      surface.vertices.push_back({facet[i][0], facet[i][1], facet[i][2]});
+    add_triangle(surface);
   }
   return surface;
+}
+
+/// Removes the first word of `words`; it is empty if there is none.
+std::string_view next_word(std::string_view& words) {
+  constexpr std::string_view blanks = " \t\r";
+  words.remove_prefix(std::min(words.find_first_not_of(blanks), words.size()));
+  const std::string_view word = words.substr(0, words.find_first_of(blanks));
+  words.remove_prefix(word.size());
+  return word;
+}
+
+/// False if the first word is no number.
+bool next_number(std::string_view& words, double& to) {
+  std::string_view word = next_word(words);
+  if (word.starts_with('+')) word.remove_prefix(1);
+  const char* const end = word.data() + word.size();
+  const auto [stop, error] = std::from_chars(word.data(), end, to);
+  return error == std::errc{} && stop == end;
+}
+
+Surface read_text(const std::string& path, const std::string& text) {
+  constexpr std::array<std::string_view, 5> passed_over{"solid", "facet", "outer", "endfacet",
+                                                        "endsolid"};
+  Surface surface;
+  std::istringstream lines(text);
+  std::string line, last;
+  for (std::size_t number = 1; std::getline(lines, line); ++number) {
+    std::string_view words(line);
+    const std::string_view word = next_word(words);
+    if (word.empty()) continue;
+    if (word == "vertex") {
+      tess::dn::Vec3 at{};
+      if (!next_number(words, at.x) || !next_number(words, at.y) || !next_number(words, at.z) ||
+          !next_word(words).empty())
+        tess::fail(ErrorCode::bad_file, path, ":", number, ": a vertex needs three numbers");
+      surface.vertices.push_back(at);
+    } else if (word == "endloop") {
+      const std::size_t n = surface.vertices.size() - 3 * surface.triangles.size();
+      if (n != 3)
+        tess::fail(ErrorCode::bad_file, path, ":", number, ": a facet of ", n,
+                   " vertices; STL holds triangles only: divide it, or write OBJ or PLY");
+      add_triangle(surface);
+    } else if (std::ranges::find(passed_over, word) == passed_over.end()) {
+      tess::fail(ErrorCode::bad_file, path, ":", number,
+                 ": no line of an STL file begins so; is it binary and truncated?");
+    }
+    last = word;
+  }
+  if (last != "endsolid" || surface.vertices.size() != 3 * surface.triangles.size())
+    tess::fail(ErrorCode::bad_file, path,
+               ": ends without endsolid, or a facet without endloop; is it truncated?");
+  return surface;
+}
+
+}  // namespace
+
+Surface read_stl(const std::string& path) {
+  std::ifstream file = tess::detail::open_file(path, "an STL file");
+  std::string bytes(std::istreambuf_iterator<char>(file), {});
+  if (bytes.size() >= head) {
+    std::uint32_t n_facets = 0;
+    std::memcpy(&n_facets, bytes.data() + head - sizeof(n_facets), sizeof(n_facets));
+    // What follows the facets is less than one more, so `n_facets` is their number. Some binary
+    // files begin with "solid" as well.
+    const std::size_t end = head + n_facets * per_facet;
+    if (bytes.size() >= end && bytes.size() - end < per_facet) return read_binary(bytes, n_facets);
+  }
+  std::ranges::transform(bytes, bytes.begin(), [](unsigned char c) { return std::tolower(c); });
+  const std::size_t begin = std::min(bytes.find_first_not_of(" \t\r\n"), bytes.size());
+  if (bytes.compare(begin, 5, "solid") != 0)
+    tess::fail(ErrorCode::bad_file, path,
+               ": is not an STL file, or is truncated: it neither begins with 'solid' nor has as "
+               "many bytes as its facets need");
+  return read_text(path, bytes);
 }
 
 }  // namespace apps

@@ -139,7 +139,22 @@ TEST_CASE("a surface without area, or a very small one, is a surface for a colli
               .size() == 1);
 }
 
-TEST_CASE("OBJ and PLY are read in double precision", "[apps][surface_file]") {
+TEST_CASE(
+    "STL is read in capital letters, of several solids, and with some bytes behind its facets",
+    "[apps][surface_file]") {
+  const tess::test::Scratch scratch;
+  std::string text = text_stl(triangles);
+  text.replace(text.find("0.5"), 3, ".5");
+  std::ranges::transform(text, text.begin(), [](unsigned char c) { return std::toupper(c); });
+  auto twice = triangles;
+  twice.insert(twice.end(), triangles.begin(), triangles.end());
+  CHECK(soup(read_surface(scratch.write("a.stl", text + text_stl(triangles) + "\r\n"))) == twice);
+  std::string binary = binary_stl(triangles) + "more";
+  binary.replace(0, 6, "solid ");
+  CHECK(soup(read_surface(scratch.write("a.stl", binary))) == triangles);
+}
+
+TEST_CASE("text is read in double precision", "[apps][surface_file]") {
   const tess::test::Scratch scratch;
   const std::string x = "500000.123456789";
   const Surface of_obj =
@@ -152,6 +167,10 @@ TEST_CASE("OBJ and PLY are read in double precision", "[apps][surface_file]") {
       "end_header\n" +
           x + " 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"));
   CHECK(of_ply.vertices[0].x == 500000.123456789);
+  const Surface of_stl = read_surface(scratch.write(
+      "a.stl", "solid\nfacet normal 0 0 1\nouter loop\nvertex " + x +
+                   " 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid\n"));
+  CHECK(of_stl.vertices[0].x == 500000.123456789);
 }
 
 TEST_CASE("a file that is cut anywhere is refused by its name", "[apps][surface_file]") {
@@ -165,11 +184,12 @@ TEST_CASE("a file that is cut anywhere is refused by its name", "[apps][surface_
       if (!message.starts_with(path + ": ")) FAIL(format << ", " << n << " bytes: " << message);
     }
   }
-  const std::string stl = binary_stl(triangles);
-  for (std::size_t n = 0; n < stl.size(); n += 7) {
-    const std::string path = scratch.write("cut.stl", stl.substr(0, n));
-    CHECK(message_of([&] { (void)read_surface(path); }).starts_with(path + ": "));
-  }
+  // The last word of the text is endsolid, whatever follows.
+  for (const std::string& stl : {binary_stl(triangles), text_stl(triangles)})
+    for (std::size_t n = 0; n + 7 < stl.size(); n += 7) {
+      const std::string path = scratch.write("cut.stl", stl.substr(0, n));
+      CHECK(message_of([&] { (void)read_surface(path); }).starts_with(path + ":"));
+    }
 }
 
 TEST_CASE("what is no surface is refused with its name and the reason", "[apps][surface_file]") {
@@ -214,7 +234,15 @@ TEST_CASE("what is no surface is refused with its name and the reason", "[apps][
              Contains("unknown type 'real'"));
   CHECK_THAT(refused("a.ply", "ply\nformat ascii 1.0\nelement dust 99999999999\nend_header\n"),
              Contains("elements without properties"));
-  CHECK_THAT(refused("a.stl", binary_stl({})), Contains("not an STL file"));
+  CHECK_THAT(refused("a.stl", binary_stl({})), Contains("holds no triangles"));
+  CHECK_THAT(refused("a.stl", binary_stl({}) + std::string(50, 'x')), Contains("not an STL file"));
+  const std::string vertex = "solid\nvertex 0 0 0\n";
+  CHECK_THAT(refused("a.stl", vertex + "endloop\n"), Contains("a.stl:3: a facet of 1 vertices"));
+  CHECK_THAT(refused("a.stl", vertex + "endsolid\n"), Contains("without endloop"));
+  CHECK_THAT(refused("a.stl", vertex + "vertex 0 zero 0\n"), Contains("a.stl:3: a vertex needs"));
+  CHECK_THAT(refused("a.stl", vertex + "\1\n"), Contains("a.stl:3: no line of an STL file"));
+  CHECK_THAT(refused("a.stl", vertex + vertex + vertex + vertex + "endloop\nendsolid"),
+             Contains("a.stl:9: a facet of 4 vertices") && Contains("divide it"));
   CHECK_THAT(refused("a.stl", "hello"), Contains("not an STL file"));
   CHECK_THAT(refused("a.stl", binary_stl({{{{0, 0, 0}, {1, 0, 0}, {0, NAN, 0}}}})),
              Contains("not finite"));
