@@ -13,6 +13,7 @@ constexpr int max_bounces = 16;
 // The shortest advances, in cells: into the next voxel; for trilinear blends, below the resolution
 // of the grid.
 constexpr float into_next = 1e-3F, blend_stride = 0.25F;
+constexpr float level = 1e-6F;      // slopes of a path below this are rounding
 constexpr double most_bent = 0.25;  // cells between a path and the straight one taken for it
 constexpr double never = HUGE_VAL;
 // Of the paths of a step: a particle that sinks no faster rests on the surface, up to rounding.
@@ -31,11 +32,12 @@ Sample sample_of(const PlacedObject& object, LookUp kind, F3 g) {
                            : sample<LookUp::tangent, Ask::both>(object.field, g);
 }
 
-/// The fraction of `way`, in grid coordinates, that stays in the voxel of g.
-F way_in_voxel(F3 g, F3 way) {
-  const auto along = [](F at, F by) {
+/// The fraction of `way`, in grid coordinates, that stays in the voxel of g. A slope of the size of
+/// rounding would hold particles that slide on the boundary of voxels at it: it counts as none.
+F way_in_voxel(F3 g, F3 way, F per_cell) {
+  const auto along = [per_cell](F at, F by) {
     const F h = at + 0.5F, in = h - floor(h);
-    return by == 0.0F ? all(HUGE_VALF) : (by > 0.0F ? 1.0F - in : in) / abs(by);
+    return abs(by) * per_cell >= level ? (by > 0.0F ? 1.0F - in : in) / abs(by) : all(HUGE_VALF);
   };
   return min(min(along(g.x, way.x), along(g.y, way.y)), along(g.z, way.z));
 }
@@ -58,7 +60,7 @@ Here sample_here(const PlacedObject& object, LookUp kind, const Pose& pose, D3 x
   const F per_cell = 1.0F / sqrt(dot(w, w));
   const F straight = kind == LookUp::trilinear
                          ? blend_stride * per_cell
-                         : (in ? way_in_voxel(g, w) : F{}) + into_next * per_cell;
+                         : (in ? way_in_voxel(g, w, per_cell) : F{}) + into_next * per_cell;
   Here here{widen(in) ? to_double(distance_in_world(object, found)) : all(never), refined(n), {}};
   if (object.bends()) {
     const Bend bend = bend_of(object, pose, x, way);
