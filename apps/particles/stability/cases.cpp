@@ -190,6 +190,23 @@ void bounces(Rows& rows) {
            20 * step);
 }
 
+/// Traced bounces under gravity: straight up and down, and also off the walls of a room.
+void traced_bounces(Rows& rows) {
+  const Field room = room_field(cube_grid(1.5, 40), 1);
+  const Object object{&room, {}};
+  Rules rules = impact(1, Sweep::on);
+  rules.gravity = Gravity{{0, 0, -9.81}};
+  for (const Vec3 along : {Vec3{}, Vec3{1.1, 0.7, 0}})
+    for (const double step : {0.01, 0.03, 0.1}) {
+      const double energy = 0.7 * 9.81 + 0.5 * dot(along, along);
+      const Particle end = flown(rules, step, 2000, {&object, 1}, {{0.1, 0.2, -0.3}, along});
+      const double now = (end.position.z + 1) * 9.81 + 0.5 * dot(end.velocity, end.velocity);
+      const std::string name = norm(along) > 0 ? "walls" : "floor";
+      rows.add("traced bounces, " + name + ": energy", "dt √(g/h)", step * std::sqrt(9.81 / 0.7),
+               std::abs(now / energy - 1), 1e-12);
+    }
+}
+
 }  // namespace
 
 Rules impact(double restitution, Sweep sweep, LookUp look_up) {
@@ -214,6 +231,7 @@ void stiff_rules(Rows& rows) {
   explosion(rows);
   surface_flow(rows);
   bounces(rows);
+  traced_bounces(rows);
 }
 
 }  // namespace stability

@@ -184,6 +184,28 @@ L finite(D3 v) {
   return norm1(v) < never;
 }
 
+/// The velocity with which particles meet a surface, and its change along the normal.
+struct Collision {
+  D3 met;
+  D kick;
+};
+
+/// A collision at the fraction f of a straight path; the velocity goes from `start` to `end`. The
+/// potential energy there is lower by f (1 - f) (end - start)² / 2 than on the parabola at the same
+/// time. The velocity gets the difference: its part along the normal by that part of end - start,
+/// its part along the surface by the rest. So the energy is kept, seen from the surface too.
+Collision collision(const RuleConstants& c, D3 start, D3 end, D f, D3 n, D3 u) {
+  const D3 gained = end - start, met = fma(f, gained, start), w = met - u;
+  const D rise = dot(n, w);
+  if (!c.parabola) return {met, -(1 + c.restitution) * min(rise, D{})};
+  const D off = f * (1.0 - f), an = dot(n, gained);
+  const D3 along = fma(-an, n, gained);
+  const D p = dot(along, w), q = dot(along, along), r = abs(p) + sqrt(fma(p, p, off * q * q));
+  const D more = only(r > 0.0, off * q / r);
+  return {fma(p < 0.0 ? -more : more, along, met),
+          max(c.restitution * sqrt(fma(rise, rise, off * an * an)) - rise, D{})};
+}
+
 /// Moves particles that touch an object at the fraction f of the step with it until the step's end.
 /// x: their places; slides: their velocities relative to the surface.
 void take_along(const Scene& scene, const Contact& contact, L touches, D f, D3& x, D3 slides,
@@ -231,8 +253,7 @@ void trace_vector(const Scene& scene, std::span<const Untraced> from, const Part
     const D s = only(flies, contact.at), fraction = only(rest > 0.0, s / rest);
     const D3 n = contact.normal, u = contact.surface_velocity;
     rest = rest - s;
-    const D3 met = fma(fraction, end - start, start);
-    const D kick = -(1 + c.restitution) * min(dot(n, met - u), D{});
+    const auto [met, kick] = collision(c, start, end, fraction, n, u);
     start = select(flies, fma(kick, n, met), start);
     D3 a = all(c.acceleration);
     if (drags) a = fma(all(c.surface_rate), u, a);

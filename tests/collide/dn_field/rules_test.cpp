@@ -184,6 +184,31 @@ TEST_CASE("an impact happens at its place and angle within the step", "[dn_field
   }
 }
 
+TEST_CASE("a traced impact keeps the energy of a parabola, seen from the surface",
+          "[dn_field][rules]") {
+  for (const Vec3 normal : {Vec3{0, 0, 1}, direction({1, 0, 1}), Vec3{1, 0, 0}, Vec3{0, 0, -1}}) {
+    const Field plane = plane_field(cube_grid(2, 17), normal);
+    for (const double restitution : {1.0, 0.5, 0.0})
+      for (const double speed : {0.0, 5.0})  // of the surface
+        for (double away = 0; away < 1; away += 0.01) {
+          Object object{&plane, {}};
+          object.frame.velocity = {0, speed, -speed};
+          Rules rules;
+          rules.impact = Impact{restitution, 0, Sweep::on};
+          rules.gravity = Gravity{{0, 0, -1}};
+          const Vec3 start = away * normal, along = Vec3{0.3, 0.1, away - 0.5} - 0.8 * normal;
+          const Vec3 u = object.frame.velocity;
+          const Particle end = flown(rules, 1, 1, {&object, 1}, {start, along + u});
+          const Vec3 v = end.velocity - u, moved = end.position - u - start;
+          const double gain = 0.5 * (dot(v, v) - dot(along, along)) + moved.z;
+          INFO(normal.x << " " << normal.z << " " << restitution << " " << speed << " " << away);
+          CHECK(gain < 1e-12);
+          // A particle that would return within the step slides.
+          if (restitution == 1 && dot(moved + start, normal) > 1e-6) CHECK(gain > -1e-12);
+        }
+  }
+}
+
 TEST_CASE("a spring adds no energy, by any look-up and stiffness", "[dn_field][rules]") {
   // Curved, with a medial axis within reach, and a corner seen from within: normals that change in
   // a step, that blend to nothing, and that know one wall of three.
