@@ -110,6 +110,8 @@ explains 'one model has no pairs' wave:64
 explains 'slack *left out' boxes:64
 explains 'slack *0.25 .*kept' boxes:64 --pes 1 --slack 0.25
 explains 'voxel size *2.5 ' wave:64 --voxel-size 2.5
+"$scene" "$scratch/floor.obj" "$scratch/wall.ply" --pes 2 --voxel-size 0.01 >"$scratch/out.txt" 2>&1 && grep -q 'error *25' "$scratch/out.txt"
+check "the error is measured, whatever the voxels of the run" $?
 
 # refuses WORD COMMAND…: exit code 2, one line with WORD on standard error, nothing on standard output, no file.
 refuses() {
