@@ -210,8 +210,13 @@ Plan make_plan(const Summary& summary, std::int32_t n_pes, const ColliderOptions
   const Summary& boxes = of_pieces ? *of_pieces : summary;
   const bool is_chosen = options.size == Point{0, 0, 0};
   double widest = 0;
-  for (std::size_t k = 0; k < 3; ++k)
-    widest = std::max(widest, boxes.bounds.hi[k] - boxes.bounds.lo[k]);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double lo = boxes.bounds.lo[k], hi = boxes.bounds.hi[k];
+    widest = std::max(widest, hi - lo);
+    if (is_chosen && !std::isfinite(widest))
+      fail(ErrorCode::out_of_range, "collider: the objects reach from ", lo, " to ", hi,
+           " on axis ", k, ", further than numbers do; scale them down");
+  }
   if (is_chosen) {
     plan.origin = boxes.bounds.lo;
     double edge = chosen_size(boxes, n_pes);

@@ -97,6 +97,14 @@ TEST_CASE("many PEs do not wait for one that has the only voxel", "[collide][par
 
 // In voxels of a twelfth, boxes longer than a sixth stood on a level of eight voxels, and every PE waited
 // for the one that compared all others with them.
+TEST_CASE("objects over more than the range of a double are refused", "[collide][parallel]") {
+  constexpr double most = std::numeric_limits<double>::max();
+  const Aabb small{{0, 0, 0}, {1, 1, 1}};
+  CHECK(plan_of({small, {{-most / 4, 0, 0}, {most / 4, 1, 1}}}, 2).size[0] > 0);
+  CHECK_THROWS_WITH(plan_of({small, {{-most, 0, 0}, {most, 1, 1}}}, 2),
+                    Catch::Contains("scale them down"));
+}
+
 TEST_CASE("objects that are a little too large for the voxels have no level of their own",
           "[collide][parallel]") {
   for (const double edge : {.03, .04, .06, .08, .1, .13, .17, .2})
