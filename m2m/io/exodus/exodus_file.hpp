@@ -21,7 +21,8 @@ class ExodusFile {
 
  protected:
   [[noreturn]] void damaged(const char* call, int code) const;
-  /// Also for a warning, a positive code: the library gives one, and no numbers, for what the file lacks.
+  /// A warning (a positive code) is an error, too: the library gives one, and no numbers, for what the
+  /// file lacks.
   void check(int code, const char* call) const {
     if (code != 0) damaged(call, code);
   }
