@@ -158,8 +158,7 @@ int run(tess::Setup& setup, int argc, char** argv) {
               "box, star or torus");
   line.option("--wall WALL", options.request.wall,
               "the wall: a side set of OVERSET (its name, or its number if it has none), or an "
-              "OBJ, PLY or STL file (default: the cavities "
-              "of OVERSET)");
+              "OBJ, PLY or STL file (default: the cavities of OVERSET)");
   line.option("--field FORMULA", options.problem.field,
               "gaussian, linear, sin, or an expression in x, y, z");
   line.option("--layers", options.problem.options.fringe_layers, "layers of fringe points")

@@ -3,6 +3,7 @@
 // text: a line per word, such as "vertex X Y Z"; files of capital letters and of several solids exist.
 #include "apps/surface_file/formats.hpp"
 #include "runtime/base/open_file.hpp"
+#include "runtime/base/words.hpp"
 #include "runtime/core/error.hpp"
 
 #include <algorithm>
@@ -17,6 +18,7 @@
 namespace apps {
 namespace {
 using tess::ErrorCode;
+using tess::detail::take_word;
 using tess::dn::Surface;
 
 constexpr std::size_t head = 84, per_facet = 50;
@@ -40,18 +42,9 @@ Surface read_binary(const std::string& bytes, std::uint32_t n_facets) {
   return surface;
 }
 
-/// Removes the first word of `words`; it is empty if there is none.
-std::string_view next_word(std::string_view& words) {
-  constexpr std::string_view blanks = " \t\r";
-  words.remove_prefix(std::min(words.find_first_not_of(blanks), words.size()));
-  const std::string_view word = words.substr(0, words.find_first_of(blanks));
-  words.remove_prefix(word.size());
-  return word;
-}
-
 /// False if the first word is no number.
 bool next_number(std::string_view& words, double& to) {
-  std::string_view word = next_word(words);
+  std::string_view word = take_word(words);
   if (word.starts_with('+')) word.remove_prefix(1);
   const char* const end = word.data() + word.size();
   const auto [stop, error] = std::from_chars(word.data(), end, to);
@@ -66,12 +59,12 @@ Surface read_text(const std::string& path, const std::string& text) {
   std::string line, last;
   for (std::size_t number = 1; std::getline(lines, line); ++number) {
     std::string_view words(line);
-    const std::string_view word = next_word(words);
+    const std::string_view word = take_word(words);
     if (word.empty()) continue;
     if (word == "vertex") {
       tess::dn::Vec3 at{};
       if (!next_number(words, at.x) || !next_number(words, at.y) || !next_number(words, at.z) ||
-          !next_word(words).empty())
+          !take_word(words).empty())
         tess::fail(ErrorCode::bad_file, path, ":", number, ": a vertex needs three numbers");
       surface.vertices.push_back(at);
     } else if (word == "endloop") {

@@ -1,6 +1,7 @@
 #include "collide/dn_field/surface.hpp"
 
 #include "runtime/base/open_file.hpp"
+#include "runtime/base/words.hpp"
 #include "runtime/core/error.hpp"
 #include "runtime/core/hash.hpp"
 
@@ -14,7 +15,7 @@
 namespace tess::dn {
 namespace {
 
-constexpr std::string_view blanks = " \t\r";
+using tess::detail::take_word;
 
 /// Reads a line with those that continue it after a backslash, and without its comment. Counts the
 /// lines. False at the end of the file.
@@ -25,7 +26,7 @@ bool next_line(std::istream& file, std::string& line, std::size_t& number) {
     if (!std::getline(file, part)) return !line.empty();
     if (++number == 1 && part.starts_with("\xEF\xBB\xBF")) part.erase(0, 3);  // a byte order mark
     part.resize(std::min(part.find('#'), part.size()));
-    part.resize(part.find_last_not_of(blanks) + 1);
+    part.resize(part.find_last_not_of(tess::detail::blanks) + 1);
     more = part.ends_with('\\');
     if (more) part.back() = ' ';
     line += part;
@@ -33,39 +34,31 @@ bool next_line(std::istream& file, std::string& line, std::size_t& number) {
   return true;
 }
 
-/// The next word of a line, which it loses; empty at its end.
-std::string take_word(std::string_view& line) {
-  line.remove_prefix(std::min(line.find_first_not_of(blanks), line.size()));
-  const std::string word(line.substr(0, line.find_first_of(blanks)));
-  line.remove_prefix(word.size());
-  return word;
-}
-
-/// Reads "17", "17/3", "17//4" or "-1/…"; negative counts from the last vertex.
-std::uint32_t face_vertex(const std::string& word, std::size_t n_vertices,
-                          const std::string& place) {
+/// Reads "17", "17/3", "17//4" or "-1/…"; negative counts from the last vertex. `word`, as the line of
+/// vertex(), is a part of a string that ends behind it.
+std::uint32_t face_vertex(std::string_view word, std::size_t n_vertices, const auto& place) {
   char* end = nullptr;
-  const long long written = std::strtoll(word.c_str(), &end, 10);
-  if (end == word.c_str() ||
-      std::string_view(end).find_first_not_of("/-0123456789") != std::string::npos ||
-      (*end != '\0' && *end != '/'))
-    fail(ErrorCode::bad_file, place, ": expected a vertex number in a face, found '", word, "'");
+  const long long written = std::strtoll(word.data(), &end, 10);
+  const std::string_view rest = word.substr(static_cast<std::size_t>(end - word.data()));
+  if (rest.size() == word.size() || !(rest.empty() || rest.starts_with('/')) ||
+      rest.find_first_not_of("/-0123456789") != std::string::npos)
+    fail(ErrorCode::bad_file, place(), ": expected a vertex number in a face, found '", word, "'");
   const auto count = static_cast<long long>(n_vertices);
   const long long index = written < 0 ? count + written : written - 1;
   if (index < 0 || index >= count)
-    fail(ErrorCode::bad_file, place, ": face names vertex ", written, ", but ", n_vertices,
+    fail(ErrorCode::bad_file, place(), ": face names vertex ", written, ", but ", n_vertices,
          " stand before it");
   return static_cast<std::uint32_t>(index);
 }
 
-Vec3 vertex(std::string_view line, const std::string& place) {
+Vec3 vertex(std::string_view line, const auto& place) {
   std::array<double, 3> value{};
   for (double& v : value) {
-    const std::string word = take_word(line);
+    const std::string_view word = take_word(line);
     char* end = nullptr;
-    v = std::strtod(word.c_str(), &end);
-    if (word.empty() || *end != '\0')
-      fail(ErrorCode::bad_file, place, ": a vertex needs three numbers, found '", word, "'");
+    v = std::strtod(word.data(), &end);
+    if (word.empty() || end != word.data() + word.size())
+      fail(ErrorCode::bad_file, place(), ": a vertex needs three numbers, found '", word, "'");
   }
   return {value[0], value[1], value[2]};
 }
@@ -183,13 +176,13 @@ Surface read_obj(const std::string& path) {
   for (std::size_t number = 0; next_line(file, line, number);) {
     const auto place = [&] { return text(path, ":", number); };
     std::string_view rest = line;
-    const std::string keyword = take_word(rest);
+    const std::string_view keyword = take_word(rest);
     if (keyword == "v") {
-      surface.vertices.push_back(vertex(rest, place()));
+      surface.vertices.push_back(vertex(rest, place));
     } else if (keyword == "f") {
       std::vector<std::uint32_t> polygon;
-      for (std::string word = take_word(rest); !word.empty(); word = take_word(rest))
-        polygon.push_back(face_vertex(word, surface.vertices.size(), place()));
+      for (std::string_view word = take_word(rest); !word.empty(); word = take_word(rest))
+        polygon.push_back(face_vertex(word, surface.vertices.size(), place));
       if (polygon.size() < 3) fail(ErrorCode::bad_file, place(), ": a face needs three vertices");
       for (std::size_t i = 2; i < polygon.size(); ++i)
         surface.triangles.push_back({polygon[0], polygon[i - 1], polygon[i]});

@@ -39,8 +39,8 @@ struct Scratch {
 };
 
 struct RuleConstants : FlightConstants {
-  double curved = 0;      ///< 1 where the flight is a parabola (no drag), otherwise 0
-  bool parabola = false;  ///< whether it is one and not a straight line; no springs either
+  double curved = 0;   ///< 1 where the flight is a parabola (no drag), otherwise 0
+  bool falls = false;  ///< whether one acceleration is all that acts: no drag, no spring
   double restitution = 0, threshold = 0;
   double slack = 0;   ///< depth below the threshold that may be the sample's error
   double sunk = 0;    ///< depth below that from which a particle is lifted at no cost

@@ -197,7 +197,7 @@ struct Collision {
 Collision collision(const RuleConstants& c, D3 start, D3 end, D f, D3 n, D3 u) {
   const D3 gained = end - start, met = fma(f, gained, start), w = met - u;
   const D rise = dot(n, w);
-  if (!c.parabola) return {met, -(1 + c.restitution) * min(rise, D{})};
+  if (!c.falls) return {met, -(1 + c.restitution) * min(rise, D{})};
   const D off = f * (1.0 - f), an = dot(n, gained);
   const D3 along = fma(-an, n, gained);
   const D p = dot(along, w), q = dot(along, along), r = abs(p) + sqrt(fma(p, p, off * q * q));

@@ -49,7 +49,7 @@ RuleConstants constants_of(const Rules& rules, double step) {
   c.air = linear_flow(rate, step);
   c.surface = linear_flow(rate + c.surface_rate, step);
   c.curved = rate + c.surface_rate > 0 ? 0 : 1;
-  c.parabola = c.curved > 0 && !rules.spring && norm(c.acceleration) > 0;
+  c.falls = c.curved > 0 && !rules.spring && norm(c.acceleration) > 0;
   if (rules.impact) {
     c.restitution = rules.impact->restitution;
     c.threshold = rules.impact->threshold;

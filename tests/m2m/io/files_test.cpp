@@ -274,6 +274,9 @@ TEST_CASE("solids of gmsh are split; a tet10 of gmsh has its last two vertices s
                    "8 0 0 .5\n9 0 .5 .5\n10 .5 0 .5\n$EndNodes\n$Elements\n1\n"
                    "1 11 2 0 0 1 2 3 4 5 6 7 8 9 10\n$EndElements\n");
   CHECK(split_text(tet10) == "1 TET10 into 8 tetrahedra");
+  CHECK_THAT(
+      message_of([] { (void)read_gmsh("old", "$NOD\n1\n1 0 0 0\n$ENDNOD\n$ELM\n0\n$ENDELM\n"); }),
+      Catch::Contains("old: is MSH 1; only 2.2 and 4.1 are supported"));
   for (std::size_t t = 0; t < 8; ++t)
     CHECK(signed_volume(tet10, t) == Approx(1.0 / 48).epsilon(1e-14));
   const TetMesh solids = read_gmsh(

@@ -39,6 +39,7 @@ class Patch : public Chare<Patch>, public Piece<Patch> {
     load(small);
   }
   void vanish() { load({}); }
+  void forget() { values_.clear(); }
 
   template <class Ar>
   void serialize(Ar& ar) {
@@ -102,6 +103,7 @@ Task misuse(std::string name, TransferKind kind) {
   }
   if (name == "shrunk") co_await epoch([&] { source.broadcast<&Patch::shrink>(); });
   if (name == "vanished") co_await epoch([&] { source.broadcast<&Patch::vanish>(); });
+  if (name == "forgotten") co_await epoch([&] { source[{1}].send<&Patch::forget>(); });
   if (name == "source_moved" || name == "target_moved") {
     const ArrayProxy<Patch> moved = name == "source_moved" ? source : target;
     co_await epoch([&] {

@@ -23,4 +23,5 @@ logs 10 "$job" "$scratch/saved" 12 --pes 1
 logs 12 "${mpirun[@]}" -n 2 "$job" "$scratch/saved" 14 --pes 2
 logs 14 "$job" "$scratch/saved" 16 --pes 3
 [[ -n $want && $(log_of) == "$want" ]] && pass || fail "the log is $(log_of), not $want"
+exits 1 "checkpoint() to a path without a name: give a folder" "$job" "" 4 --pes 2
 finish
