@@ -48,9 +48,8 @@ enum class Encoding : std::uint8_t { ascii, little, big };
 
 class PlyReader {
  public:
-  explicit PlyReader(const std::string& path) : path_(path) {
-    std::ifstream file = tess::detail::open_file(path, "a PLY file");
-    text_.assign(std::istreambuf_iterator<char>(file), {});
+  explicit PlyReader(const std::string& path)
+      : path_(path), text_(tess::detail::read_file(path, "a PLY file")) {
     read_header();
   }
 

@@ -9,15 +9,14 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cctype>
 #include <charconv>
 #include <cstring>
-#include <iterator>
-#include <sstream>
+#include <string_view>
 
 namespace apps {
 namespace {
 using tess::ErrorCode;
+using tess::detail::take_line;
 using tess::detail::take_word;
 using tess::dn::Surface;
 
@@ -51,14 +50,13 @@ bool next_number(std::string_view& words, double& to) {
   return error == std::errc{} && stop == end;
 }
 
-Surface read_text(const std::string& path, const std::string& text) {
+Surface read_text(const std::string& path, std::string_view text) {
   constexpr std::array<std::string_view, 5> passed_over{"solid", "facet", "outer", "endfacet",
                                                         "endsolid"};
   Surface surface;
-  std::istringstream lines(text);
-  std::string line, last;
-  for (std::size_t number = 1; std::getline(lines, line); ++number) {
-    std::string_view words(line);
+  std::string_view last;
+  for (std::size_t number = 1; !text.empty(); ++number) {
+    std::string_view words = take_line(text);
     const std::string_view word = take_word(words);
     if (word.empty()) continue;
     if (word == "vertex") {
@@ -88,8 +86,7 @@ Surface read_text(const std::string& path, const std::string& text) {
 }  // namespace
 
 Surface read_stl(const std::string& path) {
-  std::ifstream file = tess::detail::open_file(path, "an STL file");
-  std::string bytes(std::istreambuf_iterator<char>(file), {});
+  std::string bytes = tess::detail::read_file(path, "an STL file");
   if (bytes.size() >= head) {
     std::uint32_t n_facets = 0;
     std::memcpy(&n_facets, bytes.data() + head - sizeof(n_facets), sizeof(n_facets));
@@ -98,7 +95,8 @@ Surface read_stl(const std::string& path) {
     const std::size_t end = head + n_facets * per_facet;
     if (bytes.size() >= end && bytes.size() - end < per_facet) return read_binary(bytes, n_facets);
   }
-  std::ranges::transform(bytes, bytes.begin(), [](unsigned char c) { return std::tolower(c); });
+  for (char& c : bytes)
+    if (c >= 'A' && c <= 'Z') c += 'a' - 'A';
   const std::size_t begin = std::min(bytes.find_first_not_of(" \t\r\n"), bytes.size());
   if (bytes.compare(begin, 5, "solid") != 0)
     tess::fail(ErrorCode::bad_file, path,

@@ -2,6 +2,7 @@
 
 #include "runtime/core/error.hpp"
 
+#include <algorithm>
 #include <filesystem>
 
 namespace tess::detail {
@@ -13,6 +14,17 @@ std::ifstream open_file(const std::string& path, const char* what) {
   std::ifstream file(path, std::ios::binary);
   if (!file) fail(ErrorCode::bad_file, path, ": cannot be opened; give the path of ", what);
   return file;
+}
+
+std::string read_file(const std::string& path, const char* what) {
+  std::ifstream file = open_file(path, what);
+  file.seekg(0, std::ios::end);
+  std::string bytes(static_cast<std::size_t>(std::max<std::streamoff>(file.tellg(), 0)), '\0');
+  file.seekg(0);
+  file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  if (!file)
+    fail(ErrorCode::bad_file, path, ": cannot be read to its end; give the path of ", what);
+  return bytes;
 }
 
 }  // namespace tess::detail

@@ -11,4 +11,7 @@ namespace tess::detail {
 /// such as "a field file".
 [[nodiscard]] std::ifstream open_file(const std::string& path, const char* what);
 
+/// All bytes of such a file.
+[[nodiscard]] std::string read_file(const std::string& path, const char* what);
+
 }  // namespace tess::detail

@@ -1,4 +1,4 @@
-// The words of a line of text.
+// The lines of a text and the words of a line.
 #pragma once
 
 #include <algorithm>
@@ -6,14 +6,23 @@
 
 namespace tess::detail {
 
-inline constexpr std::string_view blanks = " \t\r";
+[[nodiscard]] constexpr bool is_blank(char c) {
+  return c == ' ' || c == '\t' || c == '\r';
+}
 
 /// Removes the first word of a line, and returns it; empty if there is none.
 [[nodiscard]] inline std::string_view take_word(std::string_view& line) {
-  line.remove_prefix(std::min(line.find_first_not_of(blanks), line.size()));
-  const std::string_view word = line.substr(0, line.find_first_of(blanks));
-  line.remove_prefix(word.size());
-  return word;
+  const auto begin = std::find_if_not(line.begin(), line.end(), is_blank);
+  const auto end = std::find_if(begin, line.end(), is_blank);
+  line = {end, line.end()};
+  return {begin, end};
+}
+
+/// Removes the first line of a text and its end, and returns it.
+[[nodiscard]] inline std::string_view take_line(std::string_view& text) {
+  const std::string_view line = text.substr(0, text.find('\n'));
+  text.remove_prefix(std::min(line.size() + 1, text.size()));
+  return line;
 }
 
 }  // namespace tess::detail

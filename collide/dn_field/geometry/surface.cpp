@@ -26,7 +26,7 @@ bool next_line(std::istream& file, std::string& line, std::size_t& number) {
     if (!std::getline(file, part)) return !line.empty();
     if (++number == 1 && part.starts_with("\xEF\xBB\xBF")) part.erase(0, 3);  // a byte order mark
     part.resize(std::min(part.find('#'), part.size()));
-    part.resize(part.find_last_not_of(tess::detail::blanks) + 1);
+    while (!part.empty() && tess::detail::is_blank(part.back())) part.pop_back();
     more = part.ends_with('\\');
     if (more) part.back() = ' ';
     line += part;
