@@ -3,14 +3,13 @@
 // `vertex` (x, y, z) and `face` (a list of vertices) are taken; others are passed over.
 #include "apps/surface_file/formats.hpp"
 #include "runtime/base/open_file.hpp"
+#include "runtime/base/words.hpp"
 #include "runtime/core/error.hpp"
 
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <charconv>
 #include <cstring>
-#include <iterator>
 #include <sstream>
 
 namespace apps {
@@ -169,16 +168,11 @@ class PlyReader {
     constexpr std::string_view blanks = " \t\r\n";
     at_ = std::min(text_.find_first_not_of(blanks, at_), text_.size());
     if (at_ == text_.size()) refuse("the file ends here; it is truncated");
-    if (text_[at_] == '+') ++at_;
+    const std::size_t end = std::min(text_.find_first_of(blanks, at_), text_.size());
+    const std::string_view word = std::string_view(text_).substr(at_, end - at_);
     double value = 0;
-    const char *begin = text_.data() + at_, *end = text_.data() + text_.size();
-    const auto [stop, error] = std::from_chars(begin, end, value);
-    const bool whole = stop == end || blanks.find(*stop) != std::string_view::npos;
-    if (error != std::errc{} || !whole)
-      refuse("'",
-             text_.substr(at_, std::min<std::size_t>(text_.find_first_of(blanks, at_) - at_, 40)),
-             "' is not a number");
-    at_ = static_cast<std::size_t>(stop - text_.data());
+    if (!tess::detail::to_number(word, value)) refuse("'", word.substr(0, 40), "' is not a number");
+    at_ = end;
     return value;
   }
 

@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <charconv>
 #include <cstring>
 #include <string_view>
 
@@ -18,6 +17,7 @@ namespace {
 using tess::ErrorCode;
 using tess::detail::take_line;
 using tess::detail::take_word;
+using tess::detail::to_number;
 using tess::dn::Surface;
 
 constexpr std::size_t head = 84, per_facet = 50;
@@ -41,15 +41,6 @@ Surface read_binary(const std::string& bytes, std::uint32_t n_facets) {
   return surface;
 }
 
-/// False if the first word is no number.
-bool next_number(std::string_view& words, double& to) {
-  std::string_view word = take_word(words);
-  if (word.starts_with('+')) word.remove_prefix(1);
-  const char* const end = word.data() + word.size();
-  const auto [stop, error] = std::from_chars(word.data(), end, to);
-  return error == std::errc{} && stop == end;
-}
-
 Surface read_text(const std::string& path, std::string_view text) {
   constexpr std::array<std::string_view, 5> passed_over{"solid", "facet", "outer", "endfacet",
                                                         "endsolid"};
@@ -61,8 +52,8 @@ Surface read_text(const std::string& path, std::string_view text) {
     if (word.empty()) continue;
     if (word == "vertex") {
       tess::dn::Vec3 at{};
-      if (!next_number(words, at.x) || !next_number(words, at.y) || !next_number(words, at.z) ||
-          !take_word(words).empty())
+      if (!to_number(take_word(words), at.x) || !to_number(take_word(words), at.y) ||
+          !to_number(take_word(words), at.z) || !take_word(words).empty())
         tess::fail(ErrorCode::bad_file, path, ":", number, ": a vertex needs three numbers");
       surface.vertices.push_back(at);
     } else if (word == "endloop") {

@@ -1,4 +1,4 @@
-// The lines of a text and the words of a line.
+// The lines of a text, the words of a line, and numbers among them.
 #pragma once
 
 #include <algorithm>
@@ -24,5 +24,9 @@ namespace tess::detail {
   text.remove_prefix(std::min(line.size() + 1, text.size()));
   return line;
 }
+
+/// Reads a word that is a number from its first to its last character; false if it is none. A number
+/// that is too small for a double is 0, and one that is too large infinite.
+[[nodiscard]] bool to_number(std::string_view word, double& to);
 
 }  // namespace tess::detail

@@ -6,7 +6,7 @@
 #include "runtime/core/hash.hpp"
 
 #include <algorithm>
-#include <cstdlib>
+#include <charconv>
 #include <numeric>
 #include <ranges>
 #include <string_view>
@@ -16,6 +16,7 @@ namespace tess::dn {
 namespace {
 
 using tess::detail::take_word;
+using tess::detail::to_number;
 
 /// Reads a line with those that continue it after a backslash, and without its comment. Counts the
 /// lines. False at the end of the file.
@@ -34,13 +35,13 @@ bool next_line(std::istream& file, std::string& line, std::size_t& number) {
   return true;
 }
 
-/// Reads "17", "17/3", "17//4" or "-1/…"; negative counts from the last vertex. `word`, as the line of
-/// vertex(), is a part of a string that ends behind it.
+/// Reads "17", "17/3", "17//4" or "-1/…"; negative counts from the last vertex.
 std::uint32_t face_vertex(std::string_view word, std::size_t n_vertices, const auto& place) {
-  char* end = nullptr;
-  const long long written = std::strtoll(word.data(), &end, 10);
-  const std::string_view rest = word.substr(static_cast<std::size_t>(end - word.data()));
-  if (rest.size() == word.size() || !(rest.empty() || rest.starts_with('/')) ||
+  long long written = 0;
+  const char* const end = word.data() + word.size();
+  const auto [stop, error] = std::from_chars(word.data(), end, written);
+  const std::string_view rest(stop, end);
+  if (error != std::errc{} || !(rest.empty() || rest.starts_with('/')) ||
       rest.find_first_not_of("/-0123456789") != std::string::npos)
     fail(ErrorCode::bad_file, place(), ": expected a vertex number in a face, found '", word, "'");
   const auto count = static_cast<long long>(n_vertices);
@@ -55,9 +56,7 @@ Vec3 vertex(std::string_view line, const auto& place) {
   std::array<double, 3> value{};
   for (double& v : value) {
     const std::string_view word = take_word(line);
-    char* end = nullptr;
-    v = std::strtod(word.data(), &end);
-    if (word.empty() || end != word.data() + word.size())
+    if (!to_number(word, v))
       fail(ErrorCode::bad_file, place(), ": a vertex needs three numbers, found '", word, "'");
   }
   return {value[0], value[1], value[2]};

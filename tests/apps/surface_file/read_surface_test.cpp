@@ -209,7 +209,7 @@ TEST_CASE("what is no surface is refused with its name and the reason", "[apps][
   CHECK_THAT(refused("a.obj", "not a mesh\n"), Contains("holds no faces"));
   CHECK_THAT(refused("a.obj", "v 0 0 0\nv 1 0 0\nv 0 nan 0\nf 1 2 3\n"), Contains("vertex 2"));
   const std::string corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
-  for (const char* face : {"1.5 2 3", "1 2 3/a", "1x 2 3", "1 2 three"})
+  for (const char* face : {"1.5 2 3", "1 2 3/a", "1x 2 3", "1 2 three", "1 \v 3"})
     CHECK_THAT(refused("a.obj", corners + "f " + face + "\n"),
                Contains(":4: expected a vertex number in a face"));
   CHECK_THAT(refused("a.obj", "v 0 0\nf 1 1 1\n"), Contains(":1: a vertex needs three numbers"));
