@@ -1,5 +1,6 @@
 #include "apps/row_files.hpp"
 
+#include "apps/plot/json_text.hpp"
 #include "apps/plot/write_file.hpp"
 #include "runtime/core/error.hpp"
 #include "runtime/here.hpp"
@@ -20,7 +21,7 @@ void RowFiles::check(bool is_study) const {
 
 void RowFiles::write(const nlohmann::ordered_json& rows, const plot::Chart& chart) const {
   const nlohmann::ordered_json file{{"machine", tess::machine().describe()}, {"results", rows}};
-  if (!json_.empty()) plot::write_file(json_, file.dump(2) + "\n");
+  if (!json_.empty()) plot::write_file(json_, plot::json_text(file));
   if (!picture_.empty()) (void)plot::write_svg(picture_, chart);
 }
 

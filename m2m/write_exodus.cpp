@@ -1,5 +1,6 @@
 #include "m2m/write_exodus.hpp"
 
+#include "m2m/io/exodus/exodus_turn.hpp"
 #include "runtime/core/check.hpp"
 
 #include <algorithm>
@@ -61,6 +62,7 @@ class PartFile {
  public:
   explicit PartFile(const std::string& path)
       : path_(path), part_(path + ".part" + std::to_string(::getpid())) {
+    const ExodusTurn turn;
     ex_opts(0);
     int compute_bytes = sizeof(double);
     int stored_bytes = sizeof(double);
@@ -73,6 +75,7 @@ class PartFile {
     }
   }
   ~PartFile() {
+    const ExodusTurn turn;
     if (id_ >= 0) ex_close(id_);
     if (!part_.empty()) ::unlink(part_.c_str());
   }
@@ -266,6 +269,7 @@ ExodusSteps::~ExodusSteps() = default;
 
 void ExodusSteps::add(double time, std::span<const Field> vertex_fields,
                       std::span<const Field> tet_fields) {
+  const ExodusTurn turn;
   Writing& to = *writing_;
   TESS_CHECK(to.file.is_open(), to.path, ": a step is added to a file that finish() has closed");
   std::vector<Variable> nodal = variables(vertex_fields, to.mesh.n_points(), to.path);
@@ -299,6 +303,7 @@ void ExodusSteps::add(double time, std::span<const Field> vertex_fields,
 }
 
 void ExodusSteps::finish() {
+  const ExodusTurn turn;
   Writing& to = *writing_;
   TESS_CHECK(to.file.is_open(), to.path, ": finish() is called twice");
   if (to.n_steps == 0) put_mesh(to.file, to.mesh, to.blocks);

@@ -31,9 +31,10 @@ std::chrono::nanoseconds time(std::string_view key, std::string_view value) {
   std::string_view unit;
   const double count = number(key, value, &unit);
   const double factor = unit == "us" ? 1e3 : unit == "ms" ? 1e6 : unit == "s" ? 1e9 : 0;
-  if (factor == 0)
+  constexpr double most = 1e18;  // nanoseconds
+  if (factor == 0 || !(count * factor <= most))
     fail(ErrorCode::bad_argument, "--balance ", key, ": ", value,
-         " is not a time (a number with us, ms or s)");
+         " is not a time (a number with us, ms or s, at most 1e9s)");
   return std::chrono::nanoseconds(static_cast<std::int64_t>(count * factor));
 }
 
@@ -69,12 +70,12 @@ BalanceOptions parse_balance(std::string_view given) {
       options.window = whole(key, value);
     } else if (key == "seed") {
       options.seed = whole(key, value);
-    } else if (key == "report") {
+    } else if (key == "report" && equals == std::string_view::npos) {
       options.lines = RoundLines::print;
     } else if (first && equals == std::string_view::npos) {
       options.strategy = key;
     } else {
-      fail(ErrorCode::bad_argument, "--balance: unknown key ", key,
+      fail(ErrorCode::bad_argument, "--balance: unknown key ", key == "report" ? part : key,
            " (strategy, when, period, prediction, window, seed, report)");
     }
   }

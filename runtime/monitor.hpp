@@ -40,8 +40,8 @@ void show(std::string_view name, std::uint64_t part, F&& picture) {
   if (monitor == nullptr || pe.stopped() || !monitor->wants_part(pe, name, part)) return;
   Picture of = std::forward<F>(picture)();
   if (of.values.empty()) return;
-  const bool fits = of.width > 0 && of.height > 0 && of.x >= 0 && of.y >= 0 && of.columns > 0 &&
-                    of.x + of.columns <= of.width &&
+  const bool fits = of.width > 0 && of.height > 0 && of.x >= 0 && of.y >= 0 && of.y < of.height &&
+                    of.columns > 0 && of.columns <= of.width - of.x &&
                     static_cast<std::int64_t>(of.width) * of.height <= 1 << 20 &&
                     of.values.size() <= static_cast<std::size_t>(of.columns) *
                                             static_cast<std::size_t>(of.height - of.y);

@@ -13,6 +13,8 @@
 //     --message-memory SIZE   most bytes under way from one process to another (default 32MiB)
 //     --hang-report SECONDS   report what waits when no entry method has begun for so long
 //     --audit                 count the messages between PEs at both ends, and name lost ones
+//     --monitor ADDRESS       show the run in a browser: PORT, or ADDRESS:PORT
+//     --monitor-token TOKEN   what a browser on another machine has to know
 //     --stats                 print the counters of each PE at the end
 //     --trace FILE            write what each PE ran, as JSON for Perfetto
 //

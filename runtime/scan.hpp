@@ -145,14 +145,14 @@ class ScanOfPe final : public KeptScan {
 
   /// Gives the elements their results: `before` has what stands before each run.
   void give(Pe& pe, const typename Types::Op& op, std::vector<std::optional<T>>&& before) {
-    const Context outer = pe.context();
+    Element* const contributor = std::exchange(pe.context().element, nullptr);
     std::optional<T> sum;
     std::size_t run = 0;
     for (std::size_t i = 0; i < entries_.size(); ++i) {
       Entry& entry = entries_[i];
       if (begins_run(i)) sum = std::move(before[run++]);
       std::optional<T> whole = sum ? combined(op, *sum, entry.value) : entry.value;
-      pe.context() = Context{nullptr, outer.action, entry.epoch, 0};
+      const DeliveryScope scope(pe, entry.epoch);
       if (!entry.first) {
         entry.target(finished(op, *whole));
       } else if (sum) {
@@ -163,7 +163,7 @@ class ScanOfPe final : public KeptScan {
       pe.completion().processed(entry.epoch);
       sum = std::move(whole);
     }
-    pe.context() = outer;
+    pe.context().element = contributor;
   }
 
   void drop(Completion& completion) const override {

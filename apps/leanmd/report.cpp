@@ -1,5 +1,6 @@
 #include "apps/leanmd/report.hpp"
 
+#include "apps/plot/json_text.hpp"
 #include "runtime/here.hpp"
 
 #include <fmt/format.h>
@@ -84,7 +85,7 @@ std::string json(const Options& options, const Outcome& outcome) {
                              {"balance_rounds", std::move(rounds)},
                              {"result_hash", fmt::format("{:016x}", outcome.hash)}};
   if (outcome.wrong_forces >= 0) out["wrong_forces"] = outcome.wrong_forces;
-  return out.dump(2) + "\n";
+  return plot::json_text(out);
 }
 
 }  // namespace leanmd

@@ -2,6 +2,7 @@
 
 #include "apps/plot/chart.hpp"
 #include "apps/plot/fit.hpp"
+#include "apps/plot/json_text.hpp"
 #include "runtime/here.hpp"
 
 #include <cmath>
@@ -61,11 +62,9 @@ std::string study_json(const std::vector<StudyRow>& rows) {
     if (!row.error.empty()) one["error"] = row.error;
     list.push_back(std::move(one));
   }
-  return nlohmann::ordered_json{{"machine", tess::machine().describe()},
-                                {"fitted_order", fitted_order(rows)},
-                                {"rows", std::move(list)}}
-             .dump(2) +
-         "\n";
+  return plot::json_text(nlohmann::ordered_json{{"machine", tess::machine().describe()},
+                                                {"fitted_order", fitted_order(rows)},
+                                                {"rows", std::move(list)}});
 }
 
 void draw_study(const std::string& svg, const std::vector<StudyRow>& rows) {

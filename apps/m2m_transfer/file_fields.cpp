@@ -4,6 +4,7 @@
 #include "apps/m2m_transfer/input/status_field.hpp"
 #include "apps/m2m_transfer/output/farthest.hpp"
 #include "apps/m2m_transfer/result_format.hpp"
+#include "apps/plot/json_text.hpp"
 #include "apps/plot/write_file.hpp"
 #include "m2m/cell_transfer.hpp"
 #include "m2m/count_nan.hpp"
@@ -110,9 +111,7 @@ class SourceFields {
       if (n > 0) return;
     }
     std::size_t step = n == 0 ? 0 : n - 1;
-    const char* const end = text.data() + text.size();
-    if (!text.empty() && text != "all" &&
-        (std::from_chars(text.data(), end, step).ptr != end || text.starts_with('-')))
+    if (!text.empty() && text != "all" && !read_number(text, step))
       fail(ErrorCode::bad_argument, "--step ", text,
            " is no step; give a number from 0 on, or all");
     steps_ = {step};
@@ -436,7 +435,7 @@ std::string json(const FileFieldsReport& r) {
                               {"nan_vertices", step.n_nan},
                               {"nan_cells", step.n_nan_cells},
                               {"result_hash", fmt::format("{:016x}", step.result_hash)}});
-  return whole.dump(2) + "\n";
+  return plot::json_text(whole);
 }
 
 }  // namespace m2m_transfer

@@ -2,6 +2,7 @@
 
 #include "apps/overset/picture.hpp"
 #include "apps/plot/chart.hpp"
+#include "apps/plot/json_text.hpp"
 #include "apps/plot/write_file.hpp"
 #include "m2m/write_exodus.hpp"
 
@@ -78,7 +79,7 @@ std::string json(const Request& request, const Problem& problem, const Assembly&
           {{"point", orphan.point}, {"at", orphan.at}, {"reason", name_of(orphan.reason)}});
     out["meshes"].push_back(std::move(of_mesh));
   }
-  return out.dump(2) + '\n';
+  return plot::json_text(out);
 }
 
 std::string explanation(const Problem& problem) {

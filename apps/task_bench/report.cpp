@@ -1,6 +1,7 @@
 #include "apps/task_bench/report.hpp"
 
 #include "apps/plot/chart.hpp"
+#include "apps/plot/json_text.hpp"
 #include "apps/plot/write_file.hpp"
 
 #include <fmt/format.h>
@@ -116,7 +117,7 @@ void write_json(const std::string& path, const std::vector<Result>& results,
     all.push_back(std::move(one));
   }
   const nlohmann::ordered_json file = {{"machine", machine}, {"results", std::move(all)}};
-  plot::write_file(path, file.dump(2) + "\n");
+  plot::write_file(path, plot::json_text(file));
 }
 
 void write_csv(const std::string& path, const std::vector<Result>& results) {

@@ -2,11 +2,11 @@
 
 #include "m2m/checks/mesh_findings.hpp"
 #include "m2m/partition/curve_cut.hpp"
+#include "runtime/base/mpi_turn.hpp"
 #include "runtime/core/error.hpp"
 
 #include <cstdint>
 #include <cstdlib>
-#include <mutex>
 #include <zoltan.h>
 
 #ifdef __SANITIZE_ADDRESS__
@@ -26,14 +26,8 @@ struct IgnoreLeaks {
 };
 #endif
 
-/// Zoltan and MPI are not reentrant: one call at a time per process.
-std::mutex& zoltan_turn() {
-  static std::mutex turn;
-  return turn;
-}
-
 /// Initialises MPI as a singleton if it is not initialised yet; it is then finalised at exit. The
-/// caller holds zoltan_turn().
+/// caller has a turn.
 void need_mpi() {
   int up = 0;
   MPI_Initialized(&up);
@@ -156,7 +150,7 @@ std::vector<std::int32_t> partition(const TetMesh& mesh, std::int32_t n_parts,
   if (n_parts == 1 || mesh.tets.empty()) return parts;
   if (method == PartitionMethod::curve) return parts_on_curve(mesh, n_parts);
   std::vector<Point> centres = centroids(mesh);
-  const std::lock_guard in_turn(zoltan_turn());
+  const detail::MpiTurn turn;  // Zoltan is not reentrant, either
   need_mpi();
   float version = 0;
   check(Zoltan_Initialize(0, nullptr, &version), "Zoltan_Initialize");

@@ -90,13 +90,17 @@ void trade(LocalPe& giver, LocalPe& taker, const Item& item, const std::vector<I
   taker.receive(item);
 }
 
+std::int64_t room_of(std::uint64_t memory_limit_bytes) {
+  constexpr std::int64_t unlimited = std::numeric_limits<std::int64_t>::max() / 2;
+  return memory_limit_bytes == 0 || memory_limit_bytes > unlimited
+             ? unlimited
+             : static_cast<std::int64_t>(memory_limit_bytes);
+}
+
 std::vector<LocalPe> local_pes(const Snapshot& s) {
   std::vector<LocalPe> result;
   for (std::size_t p = 0; p < s.pes.size(); ++p) {
-    const std::uint64_t limit = s.pes.memory_limit_bytes[p];
-    constexpr std::int64_t unlimited = std::numeric_limits<std::int64_t>::max() / 2;
-    const std::int64_t room =
-        limit == 0 || limit > unlimited ? unlimited : static_cast<std::int64_t>(limit);
+    const std::int64_t room = room_of(s.pes.memory_limit_bytes[p]);
     result.emplace_back(PeSummary{0, s.pes.background[p], s.pes.speed[p],
                                   room - static_cast<std::int64_t>(s.pes.working_bytes_of(p))});
   }

@@ -75,6 +75,9 @@ class LocalPe {
 /// Carries out an offer and its answer.
 void trade(LocalPe& giver, LocalPe& taker, const Item& item, const std::vector<Item>& change);
 
+/// What a PE may hold by such a limit; 0: no limit.
+[[nodiscard]] std::int64_t room_of(std::uint64_t memory_limit_bytes);
+
 /// The local view of every PE of a snapshot.
 [[nodiscard]] std::vector<LocalPe> local_pes(const Snapshot& snapshot);
 

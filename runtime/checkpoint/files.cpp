@@ -192,7 +192,8 @@ std::string read_text(const std::string& folder, const std::string& name) {
 }
 
 bool has_file(const std::string& folder, const std::string& name) {
-  return fs::exists(folder + "/" + name);
+  std::error_code unknown;
+  return fs::exists(folder + "/" + name, unknown);
 }
 
 Buffer read_file(const std::string& folder, const FileSum& sum) {

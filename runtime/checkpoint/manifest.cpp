@@ -52,6 +52,11 @@ Manifest parse(const std::string& path, const std::string& text) {
 }  // namespace
 
 std::string to_text(const Manifest& manifest, const MainPart& main) {
+  try {
+    (void)Json(manifest.note).dump();
+  } catch (const Json::exception&) {
+    fail(ErrorCode::bad_argument, "the note of a checkpoint is no text in UTF-8: ", manifest.note);
+  }
   Json json;
   json["tessera_checkpoint"] = checkpoint_version;
   json["number"] = manifest.number;

@@ -7,6 +7,7 @@
 #include "runtime/collections/collection.hpp"
 #include "runtime/collections/elements/index_map.hpp"
 #include "runtime/core/error.hpp"
+#include "runtime/core/text.hpp"
 #include "runtime/report/waiting.hpp"
 #include "runtime/scheduler/runtime.hpp"
 
@@ -396,6 +397,9 @@ Task write_checkpoint(std::string folder, std::string state_type, std::vector<st
     co_await save_all(folder, std::move(main), std::move(options), begun);
   } catch (const Error&) {
     error = std::current_exception();
+  } catch (const std::exception& other) {  // of the file system, or of the memory
+    error =
+        std::make_exception_ptr(Error(ErrorCode::environment, text(folder, ": ", other.what())));
   }
   if (error && !begun.writers.empty()) {  // it may have filled the memory or the disk
     AskAll<&remove_here> removed(RemoveQuestion{folder, {begun.number}}, begun.writers);

@@ -1,6 +1,7 @@
 #include "runtime/collections/broadcast_log.hpp"
 
 #include "runtime/base/spanning_tree.hpp"
+#include "runtime/core/check.hpp"
 
 #include <algorithm>
 #include <deque>
@@ -12,6 +13,9 @@ namespace {
 
 // Settled broadcasts are reported to the root in portions, so that a broadcast costs no reply.
 constexpr std::uint64_t portion = 16;
+
+// Elements keep the number of a broadcast in 32 bits.
+constexpr std::uint64_t most_broadcasts = ~std::uint32_t{0};
 
 }  // namespace
 
@@ -44,6 +48,8 @@ std::size_t BroadcastLog::n_kept() const {
 
 void BroadcastLog::on_start(NumberedCall&& call) {
   call.number = ++last_number_;
+  TESS_CHECK(last_number_ <= most_broadcasts, "a collection has had ", last_number_ - 1,
+             " broadcasts, which is the limit: create another one");
   on_call(std::move(call));
 }
 

@@ -106,11 +106,8 @@ void ReductionHostOfCollection::postpone_new_elements() {
 
 void ReductionHostOfCollection::deliver(Partial& result, EpochId epoch) {
   Pe& pe = collection_.pe();
-  const Context before = pe.context();
-  pe.context().epoch = epoch;
-  pe.context().led_by = 0;  // the result is not led to by the last contributor's broadcast
+  const DeliveryScope scope(pe, epoch);
   result.complete(pe);
-  pe.context() = before;
 }
 
 }  // namespace tess::detail

@@ -56,7 +56,7 @@ void gone_arrives(Collection& collection, Gone&& m) {
   Sections& sections = collection.sections();
   SectionPart* part = sections.part(m.section);
   if (part == nullptr) return;
-  sections.lists()->gone(m.section, m.ordinal, m.next);
+  sections.lists()->gone(m.section, m.ordinal);
   part->total.remove_member(m.next);
   part->deliver_complete();
 }
@@ -105,11 +105,10 @@ void SectionPart::arrived(std::uint32_t number, Gathered&& gathered) {
 void SectionPart::deliver_complete() {
   Pe& pe = sections.collection().pe();
   for (Gathered whole; total.take(whole); whole = {}) {
-    const Context before = pe.context();
-    pe.context().epoch = whole.epoch();
-    pe.context().led_by = 0;  // the result is not led to by the last contributor's broadcast
-    whole.value.held->complete(pe);
-    pe.context() = before;
+    {
+      const DeliveryScope scope(pe, whole.epoch());
+      whole.value.held->complete(pe);
+    }
     // The result has been sent in the same epoch before the contributions are settled.
     settle(pe.completion(), whole.shares);
   }

@@ -34,8 +34,8 @@ class SectionLists {
 
   /// Sends a multicast to an element here as an ordinary message, which is counted as sent.
   virtual void send_again(Element& element, SectionId section, const SectionCall& call) = 0;
-  /// On the root: a member was destroyed that would have contributed to `next`.
-  virtual void gone(SectionId section, std::uint32_t ordinal, std::uint32_t next) = 0;
+  /// On the root: a member was destroyed.
+  virtual void gone(SectionId section, std::uint32_t ordinal) = 0;
   /// The section ends here: what waits for it is dropped.
   virtual void end(SectionId section) = 0;
   virtual void end_all() = 0;

@@ -1,7 +1,6 @@
-// Checks for bugs and misuse. TESS_CHECK is on in every build. It prints the condition, its place
-// and what was expected, adds what the runtime does on this thread (PE, array, index, entry,
-// epoch), and ends the job. TESS_DEBUG_CHECK is for costly checks: it is compiled only with
-// TESS_CHECKS=all.
+// Checks for bugs and misuse, on in every build. TESS_CHECK prints the condition, its place and what
+// was expected, adds what the runtime does on this thread (PE, array, index, entry, epoch), and ends
+// the job.
 #pragma once
 
 #include "runtime/core/error.hpp"
@@ -28,11 +27,3 @@ CheckAbort set_check_abort(CheckAbort end) noexcept;
     if (!(condition)) [[unlikely]]                                                             \
       ::tess::check_failed(#condition, __FILE__, __LINE__, ::tess::failure_text(__VA_ARGS__)); \
   } while (false)
-
-#ifdef TESS_CHECKS_ALL
-#define TESS_DEBUG_CHECK(condition, ...) TESS_CHECK(condition, __VA_ARGS__)
-#else
-#define TESS_DEBUG_CHECK(condition, ...) \
-  do {                                   \
-  } while (false)
-#endif

@@ -13,8 +13,8 @@
 //     announcement ─► take_in ─► Mail ─► Program::place ─► expect ─► MPI_Irecv … ─► Mail ─► placed
 #pragma once
 
+#include "runtime/base/mpi_turn.hpp"
 #include "runtime/base/mpsc_queue.hpp"
-#include "runtime/base/try_lock.hpp"
 #include "runtime/machine/machine.hpp"
 #include "runtime/machine/mpi_mail.hpp"
 #include "runtime/machine/mpi_requests.hpp"
@@ -62,7 +62,7 @@ class Transport {
   /// Any thread.
   [[nodiscard]] Mail new_mail() const { return Mail(slot_bytes_); }
 
-  TryLock lock;
+  TryLock& lock = mpi_lock();
 
  private:
   enum Tag : int { whole, announcement };

@@ -416,6 +416,27 @@ class RunsOn {
   Pe* before_;
 };
 
+/// While a result is delivered: in the epoch of its contributions, and not led to by the broadcast
+/// of the last contributor. (The action is left alone: other threads read it.)
+class DeliveryScope {
+ public:
+  DeliveryScope(Pe& pe, EpochId epoch)
+      : context_(pe.context()),
+        epoch_(std::exchange(context_.epoch, epoch)),
+        led_by_(std::exchange(context_.led_by, 0)) {}
+  ~DeliveryScope() {
+    context_.epoch = epoch_;
+    context_.led_by = led_by_;
+  }
+  DeliveryScope(const DeliveryScope&) = delete;
+  DeliveryScope& operator=(const DeliveryScope&) = delete;
+
+ private:
+  Context& context_;
+  EpochId epoch_;
+  std::uint32_t led_by_;
+};
+
 }  // namespace tess::detail
 
 namespace tess {

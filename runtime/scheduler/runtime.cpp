@@ -55,7 +55,7 @@ constexpr std::size_t most_trace_records = 1'000'000;  // of each kind per PE: a
 constexpr std::size_t reserve_bytes = 1U << 20U;
 
 template <auto Handler, class Payload>
-void send_to_all(Pe& pe, const Payload& payload) {
+void send_to_each(Pe& pe, const Payload& payload) {
   for (std::int32_t to = 0; to < pe.n_pes(); ++to) send_uncounted<Handler>(pe, PeId{to}, payload);
 }
 
@@ -244,7 +244,7 @@ void Runtime::end_with(Pe& pe, int code, int signal) {
   if (stopping_) return;
   stopping_ = true;
   n_answers_ = pe.n_pes();
-  send_to_all<&stop_arrives>(pe, Stop{signal});
+  send_to_each<&stop_arrives>(pe, Stop{signal});
 }
 
 void Runtime::on_stop(Pe& pe, int signal) {
@@ -259,7 +259,7 @@ void Runtime::on_stop(Pe& pe, int signal) {
 void Runtime::on_stopped(Pe& pe, int code) {
   exit_code_ = std::max(exit_code_.load(), code);
   if (--n_answers_ != 0) return;
-  send_to_all<&leave_arrives>(pe, Code{exit_code_});
+  send_to_each<&leave_arrives>(pe, Code{exit_code_});
   // At once: as soon as another PE of this process receives its message, it stops the process, and
   // this PE would leave with the packed messages for the other processes.
   pe.flush();
@@ -281,7 +281,7 @@ void Runtime::quiescent(Pe& pe) {
   n_answers_ = pe.n_pes();
   census_ = Census{};
   empty_on_.clear();
-  send_to_all<&census_asked_arrives>(pe, Nothing{});
+  send_to_each<&census_asked_arrives>(pe, Nothing{});
 }
 
 void Runtime::on_census_asked(Pe& pe) {

@@ -1,8 +1,10 @@
 // What a user may do with the public types, on two virtual processes in any order of messages.
+#include "runtime/core/exact_sum.hpp"
 #include "runtime/machine/simulated.hpp"
 #include "runtime/runtime.hpp"
 #include "tests/support/catch.hpp"
 
+#include <cmath>
 #include <map>
 #include <optional>
 #include <unordered_set>
@@ -41,6 +43,12 @@ class Node : public tess::Chare<Node> {
   void add(int unit, tess::Callback<int> target) { contribute(InUnits{unit}, 25, target); }
   void add_in_order(int unit, tess::Callback<int> target) {
     contribute(tess::in_order(InUnits{unit}), 25, target);
+  }
+  static double summand(int i) { return std::ldexp(1.0 / (1 + i), 7 * (i % 9)); }
+  void add_exactly(tess::Callback<tess::ExactSum> target) {
+    tess::ExactSum own;
+    own.add(summand(index().x));
+    contribute(tess::AddExactSums{}, own, target);
   }
   void there(tess::Callback<void> target) { contribute(target); }
   void follow(tess::ElementProxy<Node, tess::Index1> other) { next_ = other; }
@@ -146,6 +154,23 @@ TEST_CASE("the state of a reduction's operation travels", "[api]") {
     CHECK(co_await merged == 120);
     nodes.broadcast<&Node::add_in_order>(10, ordered.callback());
     CHECK(co_await ordered == 120);
+  });
+}
+
+TEST_CASE("a reduction of exact sums has the same bits in every order", "[api]") {
+  constexpr int n = 40;
+  double rounded = 0;
+  tess::ExactSum exact;
+  for (int i = n - 1; i >= 0; --i) {
+    exact.add(Node::summand(i));
+    rounded += Node::summand(i);
+  }
+  CHECK(rounded != exact.total());
+  over_seeds([&exact]() -> tess::Task {
+    const auto nodes = tess::create<Node>(tess::range(n));
+    tess::Future<tess::ExactSum> sum;
+    nodes.broadcast<&Node::add_exactly>(sum.callback());
+    CHECK((co_await sum).total() == exact.total());
   });
 }
 

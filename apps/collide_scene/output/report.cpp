@@ -1,5 +1,7 @@
 #include "apps/collide_scene/output/report.hpp"
 
+#include "apps/plot/json_text.hpp"
+
 #include <algorithm>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -169,7 +171,7 @@ std::string json(const Report& report) {
                            {"kept", result.steps[i].n_kept},
                            {"seconds", result.steps[i].seconds}});
   // The name of a file may have any bytes; JSON holds only UTF-8.
-  return out.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+  return plot::json_text(out);
 }
 
 }  // namespace collide_scene

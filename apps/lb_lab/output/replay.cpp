@@ -1,5 +1,6 @@
 #include "apps/lb_lab/output/replay.hpp"
 
+#include "apps/plot/json_text.hpp"
 #include "runtime/balance/datafile/lb_datafile.hpp"
 #include "runtime/balance/fold.hpp"
 #include "runtime/balance/memory.hpp"
@@ -134,7 +135,7 @@ Replayed replay(const Settings& s) {
         fmt::format("left out in {} of {} phases: {}: {}\n", n_phases, phases.size(), name, why);
     root["left_out"].push_back({{"strategy", name}, {"phases", n_phases}, {"reason", why}});
   }
-  out.json = root.dump(1) + "\n";
+  out.json = plot::json_text(root, 1);
   return out;
 }
 

@@ -1,6 +1,7 @@
 #include "apps/lb_lab/output/report.hpp"
 
 #include "apps/lb_lab/run/kind.hpp"
+#include "apps/plot/json_text.hpp"
 #include "apps/plot/write_file.hpp"
 #include "runtime/balance/strategy.hpp"
 #include "runtime/run.hpp"
@@ -90,7 +91,7 @@ void write_json(const std::string& path, const Sweep& sweep) {
   root["best"] = nlohmann::ordered_json::array();
   for (const std::string& workload : s.workloads)
     root["best"].push_back(json_of(best_of(sweep, workload)));
-  plot::write_file(path, root.dump(1) + "\n");
+  plot::write_file(path, plot::json_text(root, 1));
 }
 
 std::string list_text() {

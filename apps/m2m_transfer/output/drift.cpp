@@ -1,6 +1,7 @@
 #include "apps/m2m_transfer/output/drift.hpp"
 
 #include "apps/plot/chart.hpp"
+#include "apps/plot/json_text.hpp"
 #include "apps/plot/quoting.hpp"
 #include "apps/plot/write_file.hpp"
 
@@ -79,7 +80,7 @@ std::string json(const Drift& drift) {
                              {"integral", row.integral},
                              {"integral_change", row.integral_change},
                              {"result_hash", fmt::format("{:016x}", row.hash)}});
-  return whole.dump(2) + "\n";
+  return plot::json_text(whole);
 }
 
 std::string write(const Drift& drift, const std::string& folder) {

@@ -1,6 +1,7 @@
 #include "apps/m2m_transfer/output/table.hpp"
 
 #include "apps/m2m_transfer/output/farthest.hpp"
+#include "apps/plot/json_text.hpp"
 
 #include <array>
 #include <fmt/core.h>
@@ -168,7 +169,7 @@ std::string json(const std::vector<TransferReport>& reports) {
   for (const Definition& d : definitions) whole["definitions"][d.name] = d.meaning;
   whole["pairs"] = nlohmann::ordered_json::array();
   for (const TransferReport& report : reports) whole["pairs"].push_back(pair_of(report));
-  return whole.dump(2) + "\n";
+  return plot::json_text(whole);
 }
 
 }  // namespace m2m_transfer

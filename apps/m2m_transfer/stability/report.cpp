@@ -1,4 +1,5 @@
 #include "apps/m2m_transfer/stability/rows.hpp"
+#include "apps/plot/json_text.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -45,7 +46,7 @@ std::string json(const std::vector<Row>& rows) {
                              {"same_bits", row.same_bits},
                              {"refused", row.note},
                              {"ok", row.ok}});
-  return whole.dump(2) + "\n";
+  return plot::json_text(whole);
 }
 
 }  // namespace m2m_transfer::stability

@@ -2,6 +2,7 @@
 #include "apps/m2m_transfer/study/checks.hpp"
 #include "apps/m2m_transfer/study/study.hpp"
 #include "apps/plot/chart.hpp"
+#include "apps/plot/json_text.hpp"
 #include "apps/plot/quoting.hpp"
 #include "apps/plot/write_file.hpp"
 #include "runtime/core/sort_unique.hpp"
@@ -153,7 +154,7 @@ std::string json(const Study& study) {
   for (const Check& check : checks(study))
     whole["checks"].push_back(
         {{"what", check.what}, {"value", check.value}, {"limit", check.limit}, {"ok", check.ok()}});
-  return whole.dump(2) + "\n";
+  return plot::json_text(whole);
 }
 
 std::string csv(const Study& study) {

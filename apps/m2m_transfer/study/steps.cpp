@@ -2,6 +2,7 @@
 
 #include "apps/m2m_transfer/run/steps.hpp"
 #include "apps/plot/chart.hpp"
+#include "apps/plot/json_text.hpp"
 #include "apps/plot/quoting.hpp"
 #include "apps/plot/write_file.hpp"
 
@@ -81,7 +82,7 @@ std::string json(const std::vector<StepsRow>& rows) {
                              {"seconds_per_step_again", row.again},
                              {"same_bits", row.ok()},
                              {"result_hash", fmt::format("{:016x}", row.hash)}});
-  return whole.dump(2) + "\n";
+  return plot::json_text(whole);
 }
 
 std::string write(const std::vector<StepsRow>& rows, const std::string& folder) {

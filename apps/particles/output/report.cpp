@@ -1,5 +1,7 @@
 #include "apps/particles/output/report.hpp"
 
+#include "apps/plot/json_text.hpp"
+
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
@@ -131,7 +133,7 @@ std::string json(const Scene& scene, const RunResult& result, const Report& repo
   out["study"] = Json::array();
   for (const StudyRow& row : report.study) out["study"].push_back(json_of(row));
   // The name of a file may have any bytes; JSON holds only UTF-8.
-  return out.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+  return plot::json_text(out);
 }
 
 }  // namespace particles

@@ -1,5 +1,6 @@
 #include "m2m/io/exodus/exodus_elements.hpp"
 #include "m2m/io/exodus/exodus_file.hpp"
+#include "m2m/io/exodus/exodus_turn.hpp"
 #include "m2m/io/field_reader.hpp"
 #include "runtime/core/error.hpp"
 
@@ -18,6 +19,7 @@ namespace {
 class ExodusFields : public FieldReader, private ExodusFile {
  public:
   ExodusFields(const std::string& path, std::string_view bytes) : ExodusFile(path, bytes) {
+    const ExodusTurn turn;
     set_name_length();
     const auto n_steps = static_cast<std::size_t>(count(EX_INQ_TIME, "number of time steps"));
     times_.resize(n_steps);
@@ -28,6 +30,7 @@ class ExodusFields : public FieldReader, private ExodusFile {
 
   [[nodiscard]] std::vector<double> read(const TetMesh& mesh, std::size_t field,
                                          std::size_t step) const override {
+    const ExodusTurn turn;
     const bool nodal = fields_[field].place == FieldPlace::vertices;
     const std::vector<int>& variables = variables_[field];
     const std::size_t n_components = variables.size();

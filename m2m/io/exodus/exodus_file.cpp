@@ -1,5 +1,6 @@
 #include "m2m/io/exodus/exodus_file.hpp"
 
+#include "m2m/io/exodus/exodus_turn.hpp"
 #include "m2m/io/exodus/netcdf_header.hpp"
 #include "runtime/core/error.hpp"
 
@@ -47,6 +48,7 @@ ExodusFile::ExodusFile(const std::string& path, std::string_view bytes)
       most_(static_cast<std::int64_t>(
           std::min<std::size_t>(bytes.size(), std::numeric_limits<std::int64_t>::max() / 1000) *
           1000)) {
+  const ExodusTurn turn;
   std::optional<Silence> silence;
   if (bytes.starts_with("CDF")) {
     check_netcdf_header(path, bytes);
@@ -63,6 +65,7 @@ ExodusFile::ExodusFile(const std::string& path, std::string_view bytes)
 }
 
 ExodusFile::~ExodusFile() {
+  const ExodusTurn turn;
   ex_close(id_);
 }
 

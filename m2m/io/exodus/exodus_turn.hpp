@@ -1,14 +1,21 @@
-// libexodusII is not reentrant: the readers take turns in a process.
+// libexodusII is not reentrant: readers and writers take turns in a process.
 #pragma once
 
 #include <mutex>
 
 namespace tess::m2m {
 
-/// Held by each reader while it calls the library.
-inline std::mutex& exodus_turn() {
-  static std::mutex turn;
-  return turn;
-}
+/// Lives while its thread may call the library. A thread may have several.
+class ExodusTurn {
+ public:
+  ExodusTurn() : turn_(library()) {}
+
+ private:
+  static std::recursive_mutex& library() {
+    static std::recursive_mutex mutex;
+    return mutex;
+  }
+  std::lock_guard<std::recursive_mutex> turn_;
+};
 
 }  // namespace tess::m2m

@@ -27,7 +27,7 @@ class ExodusRanges final : public MeshRanges {
     ex_set_int64_status(id_, EX_ALL_INT64_API);
   }
   ~ExodusRanges() override {
-    const std::lock_guard in_turn(exodus_turn());
+    const ExodusTurn turn;
     if (id_ >= 0) ex_close(id_);
   }
   ExodusRanges(const ExodusRanges&) = delete;
@@ -66,7 +66,7 @@ class ExodusRanges final : public MeshRanges {
       const std::int64_t many = std::min(portion, n - at);
       for (auto& axis : axes) axis.resize(static_cast<std::size_t>(many));
       {
-        const std::lock_guard in_turn(exodus_turn());
+        const ExodusTurn turn;
         check(ex_get_partial_coord(id_, first + at + 1, many, axes[0].data(), axes[1].data(),
                                    axes[2].data()),
               "ex_get_partial_coord");
@@ -85,7 +85,7 @@ class ExodusRanges final : public MeshRanges {
         const std::int64_t many = std::min(portion, last - at);
         vertices.resize(4 * static_cast<std::size_t>(many));
         {
-          const std::lock_guard in_turn(exodus_turn());
+          const ExodusTurn turn;
           check(ex_get_partial_conn(id_, EX_ELEM_BLOCK, block.id, at - block.first + 1, many,
                                     vertices.data(), nullptr, nullptr),
                 "ex_get_partial_conn");
@@ -134,7 +134,7 @@ std::unique_ptr<MeshRanges> open_exodus_ranges(const std::string& path, std::str
   std::unique_ptr<ExodusRanges> ranges;
   bool fits = false;
   {
-    const std::lock_guard in_turn(exodus_turn());
+    const ExodusTurn turn;
     ranges = std::make_unique<ExodusRanges>(path);
     fits = ranges->open(static_cast<std::int64_t>(bytes.size()));
   }

@@ -104,9 +104,10 @@ std::size_t VtuFile::size_of(const XmlTag& tag, std::string_view name,
   const auto text = tag.attribute(name);
   if (!text && otherwise) return *otherwise;
   std::size_t value = 0;
-  const char* const end = text ? text->data() + text->size() : nullptr;
-  if (!text || std::from_chars(text->data(), end, value).ptr != end || text->empty())
-    damaged(tag.name, " has no number ", name);
+  if (!text) damaged(tag.name, " has no number ", name);
+  const char* const end = text->data() + text->size();
+  const auto [stop, error] = std::from_chars(text->data(), end, value);
+  if (error != std::errc{} || stop != end) damaged(tag.name, " has no number ", name);
   return value;
 }
 

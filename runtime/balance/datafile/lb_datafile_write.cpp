@@ -113,7 +113,7 @@ std::string write_lb_datafile(const std::vector<Phase>& phases, std::optional<Pe
   if (rank) file["metadata"]["rank"] = rank->value;
   file["phases"] = json::array();
   for (const Phase& phase : phases) file["phases"].push_back(document(identities, phase, rank));
-  return file.dump() + '\n';
+  return file.dump(-1, ' ', false, json::error_handler_t::replace) + '\n';
 }
 
 }  // namespace tess::balance

@@ -7,8 +7,9 @@
 //         move     ->  elements migrate                  (an epoch: it ends when all have arrived)
 //         resume   ->  every element continues
 //
-// A periodic round runs beside the elements' work. Its messages are expedited, and it neither awaits
-// an epoch nor continues a coroutine, since both take their turn after the messages that are ready:
+// A periodic round runs beside the elements' work. Its messages are expedited, and unless the
+// strategy is distributed it neither awaits an epoch nor continues a coroutine, since both take their
+// turn after the messages that are ready:
 //
 //     due -> collect -> (reduction) -> collected -> move_beside -> moved
 //

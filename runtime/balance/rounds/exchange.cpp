@@ -4,7 +4,6 @@
 #include "runtime/future.hpp"
 
 #include <bit>
-#include <limits>
 
 namespace tess::balance {
 namespace {
@@ -40,10 +39,9 @@ DistributedStrategy distributed_strategy(std::string_view name) {
 }
 
 void Exchange::hold(const PeReport& report, double speed, std::uint64_t memory_limit_bytes) {
-  const std::int64_t room = memory_limit_bytes == 0 ? std::numeric_limits<std::int64_t>::max() / 2
-                                                    : static_cast<std::int64_t>(memory_limit_bytes);
   gossip_.reset();
-  local_ = std::make_unique<LocalPe>(PeSummary{0, report.background, speed, room});
+  local_ = std::make_unique<LocalPe>(
+      PeSummary{0, report.background, speed, room_of(memory_limit_bytes)});
   n_unknown_ = 0;
   for (std::size_t i = 0; i < report.keys.size(); ++i) {
     const bool known = report.measured[i] != 0;

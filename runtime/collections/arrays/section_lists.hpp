@@ -54,7 +54,7 @@ class SectionListsOf final : public SectionLists {
   void send_again(Element& element, SectionId section, const SectionCall& call) override {
     send_token(section, array_.index_of(element), call);
   }
-  void gone(SectionId section, std::uint32_t ordinal, std::uint32_t next) override;
+  void gone(SectionId section, std::uint32_t ordinal) override;
   void end(SectionId section) override;
   void end_all() override;
   std::vector<SectionId> save(Writer& ar) const override;
@@ -391,14 +391,14 @@ template <class Index>
 void SectionListsOf<Index>::on_lost(const SectionLost& lost) {
   Lists* const lists = this->lists(lost.section);
   if (lists == nullptr) return;
-  gone(lost.section, lost.ordinal, 0);
+  gone(lost.section, lost.ordinal);
   SectionPart& part = *sections().part(lost.section);
   part.total.remove_member(0);
   part.deliver_complete();
 }
 
 template <class Index>
-void SectionListsOf<Index>::gone(SectionId section, std::uint32_t ordinal, std::uint32_t /*next*/) {
+void SectionListsOf<Index>::gone(SectionId section, std::uint32_t ordinal) {
   Root& root = lists_.at(section.value).root;
   if (!root.roster.gone(ordinal)) return;
   // The multicasts that are kept for it are not sent.

@@ -5,6 +5,12 @@
 #include "runtime/core/check.hpp"
 
 namespace tess::detail {
+namespace {
+
+// Numbers have 32 bits, and some elements are ahead.
+constexpr std::uint32_t most_rounds = ~std::uint32_t{0} - (1U << 20U);
+
+}  // namespace
 
 void ReductionTree::end() {
   for (const auto& [number, gathering] : gathering_) settle(completion_, gathering.shares);
@@ -254,6 +260,8 @@ void ReductionTree::complete_if_whole() {
     Gathering done = std::move(sum);
     whole_.erase(at);
     ++next_complete_;
+    TESS_CHECK(next_complete_ < most_rounds, words_.name, " ", next_complete_,
+               " is the last one of a collection: create another one");
     if (done.value.held) host_.deliver(*done.value.held, done.epoch());
     // The result has been sent in the same epoch before the contributions are settled.
     settle(completion_, done.shares);

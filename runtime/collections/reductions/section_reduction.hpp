@@ -140,9 +140,6 @@ class SectionReduction {
 /// The root's count of the contributions to a section.
 class SectionTotal {
  public:
-  /// A complete number, with its value.
-  using Deliver = void (*)(void* host, Gathered&& whole);
-
   /// From now on the section has so many members; no number is complete before.
   void begin(std::uint64_t n_members) {
     members_ = static_cast<std::int64_t>(n_members);

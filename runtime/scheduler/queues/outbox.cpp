@@ -33,9 +33,8 @@ Outbox::Outbox(PeId self, Machine& machine, const MessageOptions& options,
     : self_(self),
       machine_(machine),
       one_by_one_(machine.intercepts_local()),
-      limit_(std::max<std::uint64_t>(
-          credit_of(options.memory_bytes / 2 / static_cast<std::size_t>(machine.pes_per_process())),
-          1)),
+      limit_(
+          credits(options.memory_bytes / 2 / static_cast<std::size_t>(machine.pes_per_process()))),
       portion_(std::max<std::uint64_t>(
           limit_ / 2 / static_cast<std::size_t>(machine.pes_per_process()), 1)),
       bytes_sent_(bytes_sent),

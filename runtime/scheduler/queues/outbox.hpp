@@ -61,9 +61,14 @@ struct PackedHeader {
 };
 static_assert(Bitwise<PackedFrom> && Bitwise<PackedHeader>);
 
-/// The credit that a message of this size takes.
+/// The credit that so many bytes take.
+[[nodiscard]] constexpr std::uint64_t credits(std::uint64_t n_bytes) {
+  return n_bytes / 16 + 1;
+}
+/// The same for a message; of one above 64 GiB it is that of 64 GiB.
 [[nodiscard]] constexpr std::uint32_t credit_of(std::uint64_t n_bytes) {
-  return static_cast<std::uint32_t>(n_bytes / 16 + 1);
+  constexpr std::uint32_t most = ~std::uint32_t{0};
+  return credits(n_bytes) < most ? static_cast<std::uint32_t>(credits(n_bytes)) : most;
 }
 
 class Outbox {

@@ -331,6 +331,9 @@ TEST_CASE("what VTU can hold and is not supported is refused by name", "[m2m][io
              Catch::Contains("array types is missing"));
   CHECK_THAT(refusal(replaced(good, "NumberOfCells=\"6\"", "NumberOfCells=\"7\"")),
              Catch::Contains("'types' has 6 numbers instead of 7"));
+  CHECK_THAT(
+      refusal(replaced(good, "NumberOfPoints=\"8\"", "NumberOfPoints=\"99999999999999999999\"")),
+      Catch::Contains("has no number NumberOfPoints"));
   CHECK_THAT(refusal(replaced(good, "</VTKFile>", "")), Catch::Contains("</VTKFile> is missing"));
   Cells bad = cells;
   bad.cells[2].second[1] = 8;

@@ -12,6 +12,7 @@
 #include "tests/support/catch.hpp"
 
 #include <algorithm>
+#include <limits>
 
 using namespace tess;
 using namespace tess::balance;
@@ -160,6 +161,13 @@ TEST_CASE("a second element of a block takes no room for it", "[balance][memory]
     CHECK(measure(s, make_strategy(name, 1)(tighter)).n_moves == 3);
     CHECK(measure(s, make_strategy(name, 1)(unshared(s))).n_moves == 1);
   }
+}
+
+TEST_CASE("a limit above the range of a signed number is none", "[balance][memory]") {
+  constexpr std::int64_t unlimited = std::numeric_limits<std::int64_t>::max() / 2;
+  CHECK(room_of(0) == unlimited);
+  CHECK(room_of(std::numeric_limits<std::uint64_t>::max()) == unlimited);
+  CHECK(room_of(1000) == 1000);
 }
 
 TEST_CASE("strategies come near the best of all placements that keep the limits",

@@ -206,6 +206,35 @@ TEST_CASE("a checkpoint that cannot be written is removed, and the run goes on",
   CHECK(run(tess::test::adversarial(2, 2), folder, 3, last_step).log == log_of_whole());
 }
 
+namespace {
+
+struct Noted {
+  static tess::Task main(std::string folder, std::string& error) {
+    world::State state;
+    tess::CheckpointOptions options;
+    options.note = "caf\xe9";
+    try {
+      co_await tess::checkpoint(folder, state, options);
+    } catch (const tess::Error& wrong) {
+      error = wrong.what();
+    }
+    co_await steps(folder, 0, 2, state);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("a note that is no UTF-8 is refused, and the run goes on", "[runtime][checkpoint]") {
+  const tess::test::Scratch scratch;
+  const std::string folder = scratch.path("saved");
+  std::string error;
+  auto setup = tess::test::adversarial(3, 5);
+  setup.options.report = [](const std::string& /*line*/) {};
+  CHECK(tess::run(setup, [&] { return Noted::main(folder, error); }) == 0);
+  CHECK(says(error, "the note of a checkpoint is no text in UTF-8"));
+  CHECK(tess::detail::numbers_in(folder) == std::vector<std::uint64_t>{2, 1});
+}
+
 TEST_CASE("buddy copies on threads", "[runtime][checkpoint]") {
   for (int i = 0; i < 4; ++i) {
     const tess::test::Scratch scratch;

@@ -169,6 +169,8 @@ TEST_CASE("a browser sees the run while it goes on", "[runtime][monitor]") {
             CHECK(Browser(port, "/").read().find("<title>Tessera") != std::string::npos);
             CHECK(Browser(port, "/etc/passwd").read().starts_with("HTTP/1.1 404"));
             CHECK(Browser(port, "/", "evil.example").read().starts_with("HTTP/1.1 403"));
+            CHECK(Browser(port, "/", "127.evil.example").read().starts_with("HTTP/1.1 403"));
+            CHECK(Browser(port, "/", "[::1]:80").read().starts_with("HTTP/1.1 200"));
             CHECK(Browser(port, "/", "127.0.0.1:80").read().starts_with("HTTP/1.1 200"));
             Browser events(port, "/events");
             json frame;
