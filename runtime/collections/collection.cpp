@@ -6,6 +6,7 @@
 #include "runtime/collections/sections.hpp"
 #include "runtime/core/check.hpp"
 #include "runtime/core/hash.hpp"
+#include "runtime/core/text.hpp"
 #include "runtime/scheduler/interfaces/element_mover.hpp"
 #include "runtime/scheduler/runtime.hpp"
 
@@ -151,6 +152,16 @@ void Collection::postpone_new_elements() {
   if (n_new_ == 0) return;
   for (Element* element : elements_)
     if (element != nullptr && element->state_.created_after != 0) postpone(*element);
+}
+
+void Collection::deliver(Partial& result, EpochId epoch, std::string_view of) {
+  const DeliveryScope scope(pe_, epoch);
+  try {
+    result.complete(pe_);
+  } catch (...) {
+    pe_.note_place(text("at the end of a reduction of ", of, name()));
+    throw;
+  }
 }
 
 void Collection::call(Element& element, const NumberedCall& call) {

@@ -80,6 +80,8 @@ class Collection : public HostedCollection {
 
   /// Calls one element for a broadcast.
   void call(Element& element, const NumberedCall& call);
+  /// Completes a reduction in the epoch of its contributions. `of`: "", or what of the collection.
+  void deliver(Partial& result, EpochId epoch, std::string_view of);
 
   /// Calls all local elements that have not received this broadcast yet.
   void apply(const NumberedCall& call);

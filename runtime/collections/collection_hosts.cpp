@@ -105,9 +105,7 @@ void ReductionHostOfCollection::postpone_new_elements() {
 }
 
 void ReductionHostOfCollection::deliver(Partial& result, EpochId epoch) {
-  Pe& pe = collection_.pe();
-  const DeliveryScope scope(pe, epoch);
-  result.complete(pe);
+  collection_.deliver(result, epoch, {});
 }
 
 }  // namespace tess::detail

@@ -105,10 +105,7 @@ void SectionPart::arrived(std::uint32_t number, Gathered&& gathered) {
 void SectionPart::deliver_complete() {
   Pe& pe = sections.collection().pe();
   for (Gathered whole; total.take(whole); whole = {}) {
-    {
-      const DeliveryScope scope(pe, whole.epoch());
-      whole.value.held->complete(pe);
-    }
+    sections.collection().deliver(*whole.value.held, whole.epoch(), "a section of ");
     // The result has been sent in the same epoch before the contributions are settled.
     settle(pe.completion(), whole.shares);
   }

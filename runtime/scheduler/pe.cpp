@@ -290,6 +290,10 @@ void Pe::note_place() {
   if (place_.empty()) place_ = runtime_.describe(*this);
 }
 
+void Pe::note_place(std::string_view instead) {
+  if (place_.empty()) place_ = text("on ", id_, ", ", instead);
+}
+
 void Pe::note_constructor(std::string_view of, std::initializer_list<std::string_view> types) {
   if (!place_.empty()) return;
   place_ = runtime_.describe(*this) + " " + plain_name(of) + "(";

@@ -248,6 +248,8 @@ class Pe {
   void keep_exception(std::exception_ptr error);
   /// An exception leaves the code of an element: records the place for the report.
   void note_place();
+  /// The same for code that is of no element: `instead` says what ran.
+  void note_place(std::string_view instead);
   /// An exception leaves a constructor of a class: records it, with the types of its arguments, for
   /// the report.
   void note_constructor(std::string_view of, std::initializer_list<std::string_view> types);

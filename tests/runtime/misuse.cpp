@@ -136,6 +136,48 @@ class Placed : public tess::Chare<Placed<PeOfAll>> {
   void nothing() {}
 };
 
+/// A mean that refuses an empty list in its last step.
+struct Mean {
+  struct Part {
+    double sum = 0;
+    int n = 0;
+  };
+  [[nodiscard]] Part combine(Part a, const Part& b) const { return {a.sum + b.sum, a.n + b.n}; }
+  [[nodiscard]] double finish(Part all) const {
+    if (all.n == 0) throw std::runtime_error("the mean of no values");
+    return all.sum / all.n;
+  }
+};
+
+class Meter : public tess::Chare<Meter> {
+ public:
+  void give(tess::Callback<double> target) { contribute(Mean{}, Mean::Part{}, target); }
+  void give_in_order(tess::Callback<double> target) {
+    contribute(tess::in_order(Mean{}), Mean::Part{}, target);
+  }
+  struct ToSome {
+    tess::SectionProxy<Meter> section;
+    tess::Callback<double> target;
+  };
+  void give_to(ToSome to) { contribute(to.section, Mean{}, Mean::Part{}, to.target); }
+};
+
+template <auto Method>
+tess::Task mean_of_none() {
+  const auto meters = tess::create<Meter>(tess::range(3));
+  tess::Future<double> mean;
+  meters.broadcast<Method>(mean.callback());
+  (void)co_await mean;
+}
+
+tess::Task mean_of_none_in_section() {
+  const auto meters = tess::create<Meter>(tess::range(3));
+  const auto some = tess::create_section(meters, {{0}, {2}});
+  tess::Future<double> mean;
+  some.broadcast<&Meter::give_to>(Meter::ToSome{some, mean.callback()});
+  (void)co_await mean;
+}
+
 /// Contributes to a section of another array of its class.
 class Voter : public tess::Chare<Voter> {
  public:
@@ -412,6 +454,9 @@ const std::map<std::string, std::function<void()>> misuses{
     {"long_sum", [] { const tess::Task task = sum_all<Long>(); }},
     {"sum_of_none", [] { const tess::Task task = sum_of_none(); }},
     {"sum_of_empty_section", [] { const tess::Task task = sum_of_empty_section(); }},
+    {"mean_of_none", [] { const tess::Task task = mean_of_none<&Meter::give>(); }},
+    {"ordered_mean_of_none", [] { const tess::Task task = mean_of_none<&Meter::give_in_order>(); }},
+    {"section_mean_of_none", [] { const tess::Task task = mean_of_none_in_section(); }},
     {"array_not_known",
      [] {
        const tess::ArrayProxy<Block> early(tess::CollectionId{99});
