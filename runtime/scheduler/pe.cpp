@@ -30,11 +30,22 @@ constexpr std::size_t few_messages = 2;
 /// A PE that is never idle reports its epochs after so many messages.
 constexpr std::size_t messages_between_reports = 1024;
 
+/// The collection whose elements are destroyed because the run is over; null if there is none.
+thread_local const HostedCollection* ends_with_run = nullptr;
+
+std::string no_pe_text() {
+  if (ends_with_run == nullptr)
+    return "this call belongs on a PE: into an entry method or the function given to run()";
+  return text(
+      "the destructor of ", ends_with_run->name(),
+      " calls the runtime after the end of the run: destroy() the array or group before, or "
+      "send from an entry method");
+}
+
 }  // namespace
 
 Pe& current_pe() {
-  TESS_CHECK(the_current_pe != nullptr,
-             "this call belongs on a PE: into an entry method or the function given to run()");
+  TESS_CHECK(the_current_pe != nullptr, no_pe_text());
   return *the_current_pe;
 }
 
@@ -60,7 +71,13 @@ Pe::Pe(PeId id, Runtime& runtime, Machine& machine, Pool& pool, std::uint64_t se
       bundles_(machine.takes_bundles() ? static_cast<std::size_t>(n_here_) : 0),
       collection_table_(std::make_unique<CollectionTable>()) {}
 
-Pe::~Pe() = default;
+Pe::~Pe() {
+  for (const HostedCollection* collection : collection_table_->all()) {
+    ends_with_run = collection;
+    const auto ending = collection_table_->take_out(collection->id());
+  }
+  ends_with_run = nullptr;
+}
 
 void Pe::hold() {
   if (holds_) return;

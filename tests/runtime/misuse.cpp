@@ -178,6 +178,15 @@ tess::Task mean_of_none_in_section() {
   (void)co_await mean;
 }
 
+/// Sends from its destructor, which runs at the end of the run if the array is not destroyed.
+class Parting : public tess::Chare<Parting> {
+ public:
+  Parting() = default;
+  Parting(const Parting&) = delete;
+  Parting& operator=(const Parting&) = delete;
+  ~Parting() { tess::ArrayProxy<Block>(tess::CollectionId{77})[{0}].send<&Block::nothing>(); }
+};
+
 /// Contributes to a section of another array of its class.
 class Voter : public tess::Chare<Voter> {
  public:
@@ -457,6 +466,7 @@ const std::map<std::string, std::function<void()>> misuses{
     {"mean_of_none", [] { const tess::Task task = mean_of_none<&Meter::give>(); }},
     {"ordered_mean_of_none", [] { const tess::Task task = mean_of_none<&Meter::give_in_order>(); }},
     {"section_mean_of_none", [] { const tess::Task task = mean_of_none_in_section(); }},
+    {"destructor_sends", [] { tess::create<Parting>(tess::range(3)); }},
     {"array_not_known",
      [] {
        const tess::ArrayProxy<Block> early(tess::CollectionId{99});
