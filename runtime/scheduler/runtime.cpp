@@ -1,5 +1,6 @@
 #include "runtime/scheduler/runtime.hpp"
 
+#include "runtime/base/program_name.hpp"
 #include "runtime/core/check.hpp"
 #include "runtime/report/pe_watch.hpp"
 #include "runtime/scheduler/measure/critical_path.hpp"
@@ -59,6 +60,11 @@ void send_to_each(Pe& pe, const Payload& payload) {
   for (std::int32_t to = 0; to < pe.n_pes(); ++to) send_uncounted<Handler>(pe, PeId{to}, payload);
 }
 
+/// The beginning of a line of error, as guarded() writes it. A report of a test has no name.
+std::string error_heading(const RuntimeOptions& options) {
+  return (options.report ? std::string() : error_prefix()) + "error: ";
+}
+
 std::string context_of_this_thread() {
   Pe* pe = current_pe_or_null();
   return pe == nullptr ? std::string() : pe->runtime().describe(*pe);
@@ -100,9 +106,9 @@ int Runtime::run() {
   Registry::seal();
   if (!machine_.agree(Registry::fingerprint())) {
     if (machine_.process().value == 0)
-      error_line(
-          "error: the processes of this job run different programs: start the same build "
-          "everywhere");
+      error_line(error_heading(options_) +
+                 "the processes of this job run different programs: start the same build "
+                 "everywhere");
     (void)machine_.agree(
         0);  // a process that leaves ends the others: wait until the line is printed
     return 2;
@@ -209,14 +215,15 @@ std::string Runtime::describe(Pe& pe) const {
 }
 
 void Runtime::bad_input(Pe& pe, std::string_view what) {
-  if (!said_bad_input_.exchange(true)) error_line(text("error: ", one_line(what)));
+  if (!said_bad_input_.exchange(true)) error_line(error_heading(options_) + one_line(what));
   exit(pe, 2);
 }
 
 void Runtime::out_of_memory(Pe& pe, const std::string& place) {
   if (!said_out_of_memory_.exchange(true)) {
     reserve_.reset();
-    error_line(text("error: memory is exhausted ", place.empty() ? describe(pe) : place,
+    error_line(text(error_heading(options_), "memory is exhausted ",
+                    place.empty() ? describe(pe) : place,
                     "; ask for less, or spread the run over more machines"));
   }
   exit(pe, 2);

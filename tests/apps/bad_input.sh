@@ -49,7 +49,7 @@ refuses policy "${transfer[@]}" kuhn:2 kuhn:2 --policy perhaps
 refuses partition "${transfer[@]}" kuhn:2 kuhn:2 --partition perhaps
 refuses perhaps "${transfer[@]}" kuhn:2 kuhn:2 --field 'perhaps(x)'
 refuses "--voxel: -1 is not a number above 0" "${transfer[@]}" kuhn:2 kuhn:2 --voxel=-1
-refuses "--voxel 1e-12 .* at least" "${transfer[@]}" kuhn:2 kuhn:2 --pes 2 --voxel 1e-12
+refuses "^m2m_transfer: error: --voxel 1e-12 .* at least" "${transfer[@]}" kuhn:2 kuhn:2 --pes 2 --voxel 1e-12
 refuses --sim "${transfer[@]}" kuhn:2 kuhn:2 --sim pes=none
 refuses --pes "$bin/hello" --pes 0
 refuses "--pes: 100000 is not a whole number from 1 to 4096" "$bin/hello" --pes 100000
@@ -144,6 +144,8 @@ refuses "--thinned: 3 not in {1,4,16}" "${crowd[@]}" --thinned 3
 refuses "--message-ns: Value -1 not in range" "${crowd[@]}" --message-ns=-1
 refuses "--latency-ns: Value -1 not in range" "${crowd[@]}" --latency-ns=-1
 refuses "--out $scratch/missing/x.svg: cannot be written" "${crowd[@]}" --out "$scratch/missing/x"
+
+refuses "^collide_scene: error: voxel grid: coordinate" "$bin/collide_scene" boxes:100 --pes 2 --voxel-size 1e-30
 
 scaling=("$bin/m2m_scaling" --pes 1)
 refuses "missing.exo: cannot be opened" "${scaling[@]}" "$scratch/missing.exo" kuhn:2
