@@ -1,9 +1,11 @@
 #include "runtime/machine/mpi.hpp"
 
+#include "runtime/base/program_name.hpp"
 #include "runtime/core/error.hpp"
 #include "runtime/machine/mpi_transport.hpp"
 
 #include <algorithm>
+#include <cstdio>
 #include <cstdlib>
 #if defined(__GLIBC__)
 #include <malloc.h>
@@ -62,7 +64,13 @@ class MpiMachine final : public Machine, private Network {
     transport_->send(to, std::move(parcel));
   }
   void run(Program& program) override {
-    team_->run(program, topology_);
+    try {
+      team_->run(program, topology_);
+    } catch (const Error& error) {
+      if (n_processes_ == 1) throw;
+      std::fprintf(stderr, "%serror: %s\n", error_prefix().c_str(), error.what());
+      abort(2);  // the other processes have begun, and would wait for this one
+    }
     transport_->drain([&program](Link* message) { program.drop(message); });
   }
   void stop() override { team_->stop(); }

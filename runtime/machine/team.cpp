@@ -1,9 +1,11 @@
 #include "runtime/machine/team.hpp"
 
 #include "runtime/base/ticks.hpp"
+#include "runtime/core/error.hpp"
 
 #include <algorithm>
 #include <cstdint>
+#include <exception>
 #include <thread>
 
 namespace tess::detail {
@@ -33,6 +35,9 @@ Patience patience(bool oversubscribed, bool network) {
           .sleep = sleep,
           .longest_sleep = longest};
 }
+
+/// Whether the threads may run their PEs: none does before all threads have started.
+enum class Gate : std::uint8_t { closed, open, cancelled };
 
 /// The number of messages in the next step, derived from the duration of the last one. It begins
 /// with one and grows while steps are full and short, so that a PE whose messages take long checks
@@ -92,8 +97,27 @@ void Team::run(Program& program, const Topology& topology) {
     if (placement_.pinned) topology.pin(placement_.first_core + local);
     drive(program, PeId{first_.value + local}, seats_[static_cast<std::size_t>(local)]);
   };
+  std::atomic<Gate> gate{Gate::closed};
+  const auto set_gate = [&gate](Gate to) {
+    gate = to;
+    gate.notify_all();
+  };
   std::vector<std::jthread> others;
-  for (std::int32_t local = 1; local < n; ++local) others.emplace_back(drive_one, local);
+  try {
+    others.reserve(seats_.size());
+    for (std::int32_t local = 1; local < n; ++local)
+      others.emplace_back([&gate, &drive_one, local] {
+        gate.wait(Gate::closed);
+        if (gate == Gate::open) drive_one(local);
+      });
+  } catch (const std::exception& error) {
+    const std::size_t n_started = 1 + others.size();
+    set_gate(Gate::cancelled);
+    others.clear();
+    fail(ErrorCode::environment, "--pes ", n, ": this system starts no more than ", n_started,
+         n_started == 1 ? " thread (" : " threads (", error.what(), "); give fewer PEs");
+  }
+  set_gate(Gate::open);
   drive_one(0);
   others.clear();  // joins
   if (placement_.pinned) topology.unpin();

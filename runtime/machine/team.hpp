@@ -50,7 +50,7 @@ class Team {
   }
 
   /// Drives all PEs until stop(): the first on the calling thread, the others on threads of their
-  /// own.
+  /// own. Throws Error, before any PE runs, if the system does not start so many threads.
   void run(Program& program, const Topology& topology);
 
   /// Any thread, any number of times.

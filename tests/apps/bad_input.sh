@@ -53,6 +53,11 @@ refuses "^m2m_transfer: error: --voxel 1e-12 .* at least" "${transfer[@]}" kuhn:
 refuses --sim "${transfer[@]}" kuhn:2 kuhn:2 --sim pes=none
 refuses --pes "$bin/hello" --pes 0
 refuses "--pes: 100000 is not a whole number from 1 to 4096" "$bin/hello" --pes 100000
+# Threads with stacks of a gigabyte, for a few of which there is room.
+few_threads() {
+  (ulimit -s 1000000 && ulimit -v 6000000 && "$@")
+}
+few_threads true && refuses "hello: error: --pes 16: this system starts no more than [1-9] threads (.*); give fewer PEs" few_threads "$bin/hello" --pes 16
 refuses --nonsense "$bin/hello" --nonsense
 refuses "more than once" "${transfer[@]}" kuhn:2 kuhn:2 --policy keep --policy nearest
 refuses SOURCE "${transfer[@]}"
