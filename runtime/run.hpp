@@ -102,9 +102,13 @@ void exit(int code);
 /// Writes the parts to standard output in one piece. (mpirun passes on what it reads in pieces of 4 KiB,
 /// so it may mix lines of processes that print much at once.)
 void print_text(const std::string& text);
+/// The same for parts that text() can write. An index is printed as print(index_text(index())).
 template <class... Parts>
 void print(const Parts&... parts) {
-  print_text(text(parts...));
+  static_assert((Writable<Parts> && ...),
+                "print() takes numbers, strings and what has an operator<< for std::ostream; it "
+                "takes an index as index_text(index())");
+  if constexpr ((Writable<Parts> && ...)) print_text(text(parts...));
 }
 
 }  // namespace tess
