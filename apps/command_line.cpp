@@ -106,6 +106,9 @@ Option CommandLine::option(const std::string& name, T& value, const std::string&
     option->check(fits_unsigned, "");
   // What follows "--fields sin" is the first of the arguments without a name, not a second field.
   if (name.starts_with("-")) option->allow_extra_args(false);
+  // As for the runtime's options: the last value counts.
+  if (name.starts_with("-") && option->get_items_expected_max() == 1)
+    option->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
   return Option(option);
 }
 

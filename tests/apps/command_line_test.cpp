@@ -76,6 +76,29 @@ TEST_CASE("a value outside of the range is refused with the range", "[apps][comm
   CHECK_THROWS_WITH(line.parse(3, argv), Catch::Contains("65") && Catch::Contains("1 to 64"));
 }
 
+TEST_CASE("the last value of an option that is given again counts, and a list has all",
+          "[apps][command_line]") {
+  std::int32_t n_steps = 4;
+  std::optional<std::int32_t> n_blocks;
+  std::string when;
+  std::vector<std::int32_t> levels;
+  apps::CommandLine line("A program.");
+  line.option("--steps", n_steps, "steps").between(1, 64);
+  line.option("--blocks", n_blocks, "blocks");
+  line.option("--when", when, "when it writes").one_of({"never", "always"});
+  line.option("--levels", levels, "which");
+  std::vector<std::string> words{"program",  "--steps", "3",       "--blocks=7", "--when=never",
+                                 "--levels", "1",       "--steps", "5",          "--blocks",
+                                 "8",        "--when",  "always",  "--levels",   "2"};
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  CHECK(line.parse(static_cast<int>(arguments.size()), arguments.data()));
+  CHECK(n_steps == 5);
+  CHECK(n_blocks == 8);
+  CHECK(when == "always");
+  CHECK(levels == std::vector<std::int32_t>{1, 2});
+}
+
 TEST_CASE("an option without a sign takes no negative number, nor one beyond 64 bits",
           "[apps][command_line]") {
   std::uint64_t seed = 1;
