@@ -132,7 +132,7 @@ Row run_case(const Case& given) {
   row.given = given;
   tess::SimulatedOptions options;
   options.n_pes = given.n_pes;
-  options.pes_per_process = given.n_pes % given.per_process == 0 ? given.per_process : 1;
+  options.pes_per_process = given.n_pes == 1 ? 1 : given.per_process;
   options.latency = tess::Time(given.latency_ns);
   options.bandwidth = given.bandwidth / given.thinned;
   if (given.work == Work::model) options.cost = tess::Time(given.message_ns);

@@ -71,7 +71,8 @@ int study(int argc, char** argv) {
       .positive();
   line.option("--latency-ns", given.latency_ns, "of a message").between(0, 1'000'000'000);
   line.option("--bandwidth", given.bandwidth, "bytes per second").positive();
-  line.option("--per-process", given.per_process, "PEs per process").between(1, 4096);
+  line.option("--per-process", given.per_process, "PEs per process; the machine of one PE has one")
+      .between(1, 4096);
   line.option("--out PREFIX", out, "write PREFIX.svg and PREFIX.csv");
   if (!line.parse(argc, argv, "")) return 0;
   given.is_strong = kind == "strong";
@@ -90,6 +91,12 @@ int study(int argc, char** argv) {
                  " balances after every ", given.period,
                  " steps, so none of these is balanced; give ", given.period + 1, " or more");
   }
+  for (const std::int32_t n : pes)
+    if (n > 1 && n % given.per_process != 0)
+      tess::fail(tess::ErrorCode::bad_value, "--per-process ", given.per_process, ": the ", n,
+                 " PEs of --pes do not divide into processes of so many; give --pes as 1 or "
+                 "multiples of ",
+                 given.per_process, ", or another --per-process");
   if (given.work == Work::measured && given.ns_per_pair != 0)
     tess::fail(tess::ErrorCode::bad_value, "--pair-ns ", given.ns_per_pair,
                ": --work measured has no cost per pair; leave one of them out");

@@ -145,6 +145,7 @@ refuses "--steps 5: greedy_refine balances after every 5 steps" "${crowd[@]}" --
 refuses "--pair-ns 3: --work measured has no cost per pair" "${crowd[@]}" --work measured --pair-ns 3
 refuses "--pes: Value 0 not in range" "$bin/collide_scaling" --pes 1,0
 refuses "--triangles: Value 0 not in range" "$bin/collide_scaling" --pes 1 --triangles 0
+refuses "--per-process 2: the 3 PEs of --pes do not divide into processes of so many; give .* multiples of 2" "$bin/collide_scaling" --pes 4,3 --per-process 2
 refuses "--thinned: 3 not in {1,4,16}" "${crowd[@]}" --thinned 3
 refuses "--message-ns: Value -1 not in range" "${crowd[@]}" --message-ns=-1
 refuses "--latency-ns: Value -1 not in range" "${crowd[@]}" --latency-ns=-1
