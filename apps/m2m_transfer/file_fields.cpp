@@ -376,8 +376,8 @@ Task move_file_fields(const FileFieldsRequest& request, apps::Progress& progress
       add_result(result, step.result_hash, step.n_nan);
       add_result(in_cells, step.result_hash, step.n_nan_cells);
       report->steps.push_back(step);
-      if (!run.status.empty()) result.push_back(status_field(run.status));
-      if (report->has_cells) in_cells.push_back(status_field(cells.status));
+      if (!run.status.empty()) result.push_back(status_field(run.status, result));
+      if (report->has_cells) in_cells.push_back(status_field(cells.status, in_cells));
       out.add(time, result, in_cells);
     }
   }

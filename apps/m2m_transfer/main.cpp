@@ -76,7 +76,8 @@ Given add_options(apps::CommandLine& line, DriverOptions& options, std::string& 
   line.group("Output");
   line.option(
       "--out FILE", options.out,
-      "write the target mesh with the fields and the status: ExodusII if it ends in .exo, .e, "
+      "write the target mesh with the fields and the status (transfer_status if a field is called "
+      "status): ExodusII if it ends in .exo, .e, "
       ".ex2, .g, .exii, .gen or .ncdf, VTU if in .vtu, VTU written by all processes, a file per "
       "chare, if in .pvtu; with several targets to FILE.B.exo, FILE.C.exo");
   line.option("--weights FILE", options.weights,

@@ -50,7 +50,7 @@ Task collect(Problem& problem, const std::vector<DistributedMesh>& meshes, const
     mesh.fields.clear();
     for (std::size_t f = 0; f < problem.field_names.size(); ++f)
       mesh.fields.push_back({problem.field_names[f], 1, std::move(result.values[f])});
-    mesh.fields.push_back(status_field(result.status));
+    mesh.fields.push_back(status_field(result.status, mesh.fields));
     mesh.made = graph.made(m);
     mesh.back = graph.back(m);
   }

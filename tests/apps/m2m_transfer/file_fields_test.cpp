@@ -92,6 +92,32 @@ std::vector<std::uint64_t> hashes(const FileFieldsReport& report) {
 
 }  // namespace
 
+TEST_CASE("a field that is called status is written beside the status of the vertices",
+          "[m2m][driver]") {
+  const Scratch scratch;
+  FileFieldsRequest request;
+  request.target = "kuhn:4";
+  request.source = scratch.path("source.exo");
+  const TetMesh mesh = kuhn_mesh({3, 0});
+  ExodusSteps source(request.source, mesh);
+  const std::vector<double> sevens(mesh.points.size(), 7);
+  source.add(0, std::array{Field{"status", 1, sevens}, Field{"transfer_status", 1, sevens}});
+  source.finish();
+  for (const char* fields : {"status", "status,transfer_status"}) {
+    INFO(fields);
+    request.fields = {fields};
+    request.out = scratch.path("out.exo");
+    (void)moved(request);
+    const FieldFile file(request.out);
+    const TetMesh target = read_mesh(request.out);
+    for (const double value : file.vertex_field(target, "status", 0).values)
+      CHECK(value == Approx(7));
+    const std::string own = std::string(fields) == "status" ? "" : "transfer_";
+    for (const double value : file.vertex_field(target, own + "transfer_status", 0).values)
+      CHECK(value <= 1);
+  }
+}
+
 TEST_CASE("all steps of a file are moved, and by weights from a file with the same hashes",
           "[m2m][driver]") {
   const Scratch scratch;
