@@ -75,6 +75,22 @@ double area_of(std::span<const Point> points, const std::array<VertexId, 3>& t) 
 
 }  // namespace
 
+std::optional<SameDirection> same_direction(std::span<const std::array<VertexId, 3>> triangles) {
+  std::map<Edge, std::vector<std::pair<std::size_t, bool>>> edges;  // a triangle, and its direction
+  for (std::size_t t = 0; t < triangles.size(); ++t)
+    for (std::size_t i = 0; i < 3; ++i) {
+      const VertexId a = triangles[t][i], b = triangles[t][(i + 1) % 3];
+      edges[std::minmax(a, b)].emplace_back(t, a < b);
+    }
+  std::optional<SameDirection> found;
+  for (const auto& [edge, sides] : edges) {
+    if (sides.size() != 2) return std::nullopt;
+    if (!found && sides[0].second == sides[1].second)
+      found = {{sides[0].first, sides[1].first}, edge};
+  }
+  return found;
+}
+
 Rim close(std::vector<Point>& points, std::vector<std::array<VertexId, 3>>& triangles) {
   const std::vector<Edge> edges = rim_edges(triangles);
   const auto loops = loops_of(edges);

@@ -7,6 +7,9 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
+#include <span>
+#include <utility>
 #include <vector>
 
 namespace tess::m2m {
@@ -16,6 +19,15 @@ struct Rim {
   std::size_t n_loops = 0;
   double cap_share = 0;  ///< area of the caps / area of surface and caps
 };
+
+/// Two triangles that pass their common edge in the same direction.
+struct SameDirection {
+  std::array<std::size_t, 2> triangles{};
+  std::pair<VertexId, VertexId> edge;
+};
+
+/// The first such edge of a surface each of whose edges has two triangles; of any other surface none.
+std::optional<SameDirection> same_direction(std::span<const std::array<VertexId, 3>> triangles);
 
 /// Appends the centroids of the loops to `points` and the caps to `triangles`. Points at the same
 /// place are one point; no triangle names a point twice.

@@ -47,6 +47,7 @@ Wall::Wall(std::span<const Point> points, std::span<const std::array<VertexId, 3
   for (const Point& p : points) at.push_back(scaled(p));
   const std::vector<VertexId> firsts = firsts_of(at);
   std::vector<std::array<VertexId, 3>> whole;
+  std::vector<std::size_t> numbers;  // of the triangles in `whole`
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     std::array<VertexId, 3> corners{};
     for (std::size_t i = 0; i < 3; ++i) {
@@ -57,15 +58,27 @@ Wall::Wall(std::span<const Point> points, std::span<const std::array<VertexId, 3
       corners[i] = firsts[static_cast<std::size_t>(v)];
     }
     const auto& [a, b, c] = corners;
-    if (a != b && b != c && c != a) whole.push_back(corners);
+    if (a == b || b == c || c == a) continue;
+    whole.push_back(corners);
+    numbers.push_back(t);
   }
   if (whole.empty())
     fail(ErrorCode::bad_mesh, "the wall has no triangle with an area; give the surface of a body");
   rim_ = close(at, whole);
-  if (rim_.cap_share > most_capped)
+  if (rim_.cap_share > most_capped) {
+    if (const auto turned = same_direction(std::span(whole).first(numbers.size()))) {
+      const auto& [one, other] = turned->triangles;
+      const Point &p = points[static_cast<std::size_t>(turned->edge.first)],
+                  &q = points[static_cast<std::size_t>(turned->edge.second)];
+      fail(ErrorCode::bad_mesh, "the triangles of the wall are not oriented alike: triangles ",
+           numbers[one], " and ", numbers[other], " (from 0) pass their edge between (", p[0], ", ",
+           p[1], ", ", p[2], ") and (", q[0], ", ", q[1], ", ", q[2],
+           ") in the same direction; turn triangles until all normals point outwards");
+    }
     fail(ErrorCode::bad_mesh, "the wall is open: caps on its ", rim_.n_loops, " holes with ",
          rim_.n_edges, " edges are ", rim_.cap_share, " of the area, at most ", most_capped,
          " is allowed; close the holes, or merge points that should be one");
+  }
   for (const auto& corners : whole) {
     WallTriangle triangle{{}, corners};
     for (std::size_t i = 0; i < 3; ++i)

@@ -119,6 +119,8 @@ refuses "no side set body; it has none, since only ExodusII" "${overset[@]}" kuh
 refuses "missing.obj" "${overset[@]}" kuhn:4 kuhn:4 --wall "$scratch/missing.obj"
 printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >"$scratch/sheet.obj"
 refuses "the wall is open" "${overset[@]}" kuhn:4 kuhn:4 --wall "$scratch/sheet.obj"
+printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\nf 2 3 4\nf 1 4 3\n' >"$scratch/turned.obj"
+refuses "not oriented alike: triangles 0 and 1 .*between (0, 0, 0) and (1, 0, 0)" "${overset[@]}" kuhn:4 kuhn:4 --wall "$scratch/turned.obj"
 refuses "least-quality" "${overset[@]}" --least-quality 2
 refuses "layers" "${overset[@]}" --layers 0
 refuses "kuhn:4 cannot be refined" "${overset[@]}" kuhn:4 kuhn:4 --study h

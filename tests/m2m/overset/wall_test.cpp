@@ -204,6 +204,17 @@ TEST_CASE("a wall without a side is closed, one with half of its sides is refuse
   CHECK_THROWS_WITH(Wall(points, box), Catch::Contains("the wall is open"));
 }
 
+TEST_CASE("a closed wall whose triangles are turned is refused for that, with an edge",
+          "[m2m][overset]") {
+  std::vector<Point> points;
+  Triangles box = add_box(points, {0, 0, 0}, {1, 1, 1});
+  for (std::size_t t = 0; t < box.size(); t += 2) std::swap(box[t][1], box[t][2]);
+  box.insert(box.begin(), {0, 0, 1});  // without an area
+  CHECK_THROWS_WITH(Wall(points, box),
+                    Catch::Contains("not oriented alike: triangles 2 and 5 (from 0)") &&
+                        Catch::Contains("in the same direction") && !Catch::Contains("open"));
+}
+
 TEST_CASE("a wall that cannot be used is refused", "[m2m][overset]") {
   std::vector<Point> points;
   Triangles box = add_box(points, {0, 0, 0}, {1, 1, 1});
