@@ -101,6 +101,11 @@ const Error& out_of_memory() {
   return error;
 }
 
+void refuse_inside_run() {
+  TESS_CHECK(detail::current_pe_or_null() == nullptr,
+             "run() is called inside a run: a program has one run at a time");
+}
+
 /// True if other processes may belong to this run.
 bool is_in_job() {
   return under_mpirun() || program_owns_mpi();
@@ -211,6 +216,7 @@ std::string options_help() {
 }
 
 Setup take_options(int& argc, char** argv) {
+  refuse_inside_run();
   Setup setup;
   const MachineChoice choice = take_values(argc, argv, setup.options);
   if (setup.options.audit && !setup.options.trace.empty())
@@ -238,8 +244,8 @@ Setup take_options(int& argc, char** argv) {
 }
 
 int run_on(Setup& setup, std::function<void()> main) {
-  TESS_CHECK(detail::current_pe_or_null() == nullptr,
-             "run() is called inside a run: a program has one run at a time");
+  refuse_inside_run();
+  TESS_CHECK(!setup.started, "run() with a Setup that has run: make one for each run");
   setup.started = true;
   detail::Runtime runtime(*setup.machine, setup.options,
                           {&detail::element_text, &detail::element_key, &detail::element_state},

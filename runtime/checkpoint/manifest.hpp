@@ -31,14 +31,15 @@ struct SavedCollection {
 /// The contents of "main".
 struct MainPart {
   std::vector<SavedCollection> collections;
-  std::vector<CollectionNumbers::Made> numbers;  ///< by PE
+  std::vector<CollectionNumbers::Made> numbers;  ///< by PE; behind them of PEs that restarts lost
   std::vector<SectionId> sections;
   std::uint32_t places_of_futures = 0;  ///< the greatest Pe::places_of_futures()
+  std::uint64_t timers = 0;             ///< the greatest Timers::n_made()
   std::string state_type;
   std::vector<std::byte> state;  ///< the main coroutine's
   template <class Ar>
   void serialize(Ar& ar) {
-    ar(collections, numbers, sections, places_of_futures, state_type, state);
+    ar(collections, numbers, sections, places_of_futures, timers, state_type, state);
   }
 };
 

@@ -7,6 +7,11 @@
 
 namespace tess::detail {
 
+Thaw thaw_here(Pe& pe, const Thaw& done) {
+  pe.timers().thaw();
+  return done;
+}
+
 Quiet::~Quiet() {
   if (id_ != 0) pe_.leave_future(id_);
 }

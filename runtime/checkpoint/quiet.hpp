@@ -3,7 +3,7 @@
 // again, by messages that are not counted. Nothing is under way once the number sent in one wave is
 // the number processed in the wave before: both only grow (completion.hpp has the argument).
 //
-// Each PE freezes its periodic timers in the first wave; thaw() ends that. A timer that runs once is
+// Each PE freezes its periodic timers in the first wave; thaw_here() ends that. A timer that runs once is
 // reported: a checkpoint cannot save it.
 #pragma once
 
@@ -15,6 +15,12 @@
 #include <vector>
 
 namespace tess::detail {
+
+/// Ends on each PE what a Quiet began. For AskAll.
+struct Thaw {
+  std::uint8_t none = 0;
+};
+Thaw thaw_here(Pe& pe, const Thaw& done);
 
 class Quiet {
  public:

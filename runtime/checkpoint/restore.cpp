@@ -170,13 +170,15 @@ struct FinishQuestion {
   std::vector<CollectionNumbers::Made> numbers;
   std::vector<SectionId> sections;
   std::uint32_t places_of_futures = 0;
+  std::uint64_t timers = 0;
   template <class Ar>
   void serialize(Ar& ar) {
-    ar(collections, numbers, sections, places_of_futures);
+    ar(collections, numbers, sections, places_of_futures, timers);
   }
 };
 Nothing finish_here(Pe& pe, const FinishQuestion& question) {
   pe.begin_futures_behind(question.places_of_futures);
+  pe.timers().begin_behind(question.timers);
   std::set<std::uint64_t> alive;
   for (const SavedCollection& saved : question.collections) alive.insert(saved.id.value);
   for (const SectionId id : question.sections) alive.insert(id.value);
@@ -327,12 +329,15 @@ Task read_checkpoint(std::string folder, std::string state_type, std::vector<std
     if (!error.empty()) fail(ErrorCode::environment, "the restart failed: ", error);
   Quiet arrived;
   (void)co_await arrived;
-  AskAll<&finish_here> finished(FinishQuestion{chosen->main.collections, chosen->main.numbers,
-                                               chosen->main.sections,
-                                               chosen->main.places_of_futures});
+  AskAll<&finish_here> finished(
+      FinishQuestion{chosen->main.collections, chosen->main.numbers, chosen->main.sections,
+                     chosen->main.places_of_futures, chosen->main.timers});
   (void)co_await finished;
   Quiet settled;
   (void)co_await settled;
+  AskAll<&thaw_here> thawed(Thaw{});
+  (void)co_await thawed;
+  pe.runtime().made_before_restart() = std::move(chosen->main.numbers);
   state = std::move(chosen->main.state);
   pe.runtime().own_checkpoints(canonical(folder)) = std::move(own);
 }

@@ -92,11 +92,12 @@ struct SaveAnswer {
   FileSum file;
   CollectionNumbers::Made numbers{};
   std::uint32_t places_of_futures = 0;
+  std::uint64_t timers = 0;
   std::vector<SectionId> sections;  // whose root is this PE
   std::vector<HereSaved> collections;
   template <class Ar>
   void serialize(Ar& ar) {
-    ar(error, file, numbers, places_of_futures, sections, collections);
+    ar(error, file, numbers, places_of_futures, timers, sections, collections);
   }
 };
 
@@ -123,6 +124,7 @@ SaveAnswer save_here(Pe& pe, const SaveQuestion& question) {
   const std::vector<Collection*> collections = saved_collections(pe);
   answer.numbers = pe.collection_numbers().made();
   answer.places_of_futures = pe.places_of_futures();
+  answer.timers = pe.timers().n_made();
   for (const Collection* collection : collections)
     answer.collections.push_back(
         {collection->id(), collection->has_sections(), collection->n_local()});
@@ -133,14 +135,6 @@ SaveAnswer save_here(Pe& pe, const SaveQuestion& question) {
     answer.file = file.finish({bytes.data(), bytes.size()});
   });
   return answer;
-}
-
-struct Thaw {
-  std::uint8_t none = 0;
-};
-Thaw thaw_here(Pe& pe, const Thaw& done) {
-  pe.timers().thaw();
-  return done;
 }
 
 void refuse_unless_quiet(std::vector<std::string> lines) {
@@ -265,6 +259,7 @@ void add_answer(SaveAnswer& answer, Manifest& manifest, MainPart& main) {
   manifest.files.push_back(std::move(answer.file));
   main.numbers.push_back(answer.numbers);
   main.places_of_futures = std::max(main.places_of_futures, answer.places_of_futures);
+  main.timers = std::max(main.timers, answer.timers);
   main.sections.insert(main.sections.end(), answer.sections.begin(), answer.sections.end());
   for (std::size_t i = 0; i < answer.collections.size(); ++i) {
     SavedCollection& all = main.collections.at(i);
@@ -344,6 +339,10 @@ Task save_all(std::string folder, MainPart main, CheckpointOptions options, Begu
 
   AskAll<&save_here> saved(SaveQuestion{here});
   for (SaveAnswer& answer : co_await saved) add_answer(answer, manifest, main);
+  // A later restart on more PEs goes on where the former ones ended.
+  const std::vector<CollectionNumbers::Made>& before = pe.runtime().made_before_restart();
+  for (std::size_t lost = main.numbers.size(); lost < before.size(); ++lost)
+    main.numbers.push_back(before[lost]);
   if (options.buddy_copies) {
     AskAll<&read_own, &write_copy> copied(CopyQuestion{here, manifest.files, listing.hosts});
     fail_for_first(co_await copied);

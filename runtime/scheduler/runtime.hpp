@@ -111,6 +111,11 @@ class Runtime final : public Program {
   [[nodiscard]] OwnCheckpoints& own_checkpoints(const std::string& folder) {
     return own_checkpoints_[folder];
   }
+  /// By PE: what the run that a restart goes on with had made, also on PEs that this run lacks. On
+  /// PE 0.
+  [[nodiscard]] std::vector<CollectionNumbers::Made>& made_before_restart() {
+    return made_before_restart_;
+  }
   /// Prints whole lines to standard error, never mixed with lines of another thread.
   void error_line(const std::string& line);
 
@@ -189,6 +194,7 @@ class Runtime final : public Program {
   Census census_;
   std::map<CollectionId, std::int32_t> empty_on_;          // number of PEs per collection
   std::map<std::string, OwnCheckpoints> own_checkpoints_;  // by folder
+  std::vector<CollectionNumbers::Made> made_before_restart_;
   bool checkpoint_runs_ = false;
   // On each PE: the greatest exit code requested here.
   std::vector<int> asked_;

@@ -19,6 +19,7 @@
 #include "runtime/core/ids.hpp"
 #include "runtime/machine/machine.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -45,6 +46,12 @@ class Timers {
   std::uint64_t every(Time period, Call call);
   /// `call` is not called again. No effect on a timer that has run or was cancelled.
   void cancel(std::uint64_t timer);
+
+  /// The greatest number that a timer of this PE has.
+  [[nodiscard]] std::uint64_t n_made() const { return n_made_; }
+  /// The numbers of new timers are greater than this one: those of the run that a restart goes on
+  /// with name none.
+  void begin_behind(std::uint64_t number) { n_made_ = std::max(n_made_, number); }
 
   /// No tick runs until thaw().
   void freeze();

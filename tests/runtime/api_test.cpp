@@ -170,7 +170,8 @@ TEST_CASE("a reduction of exact sums has the same bits in every order", "[api]")
     const auto nodes = tess::create<Node>(tess::range(n));
     tess::Future<tess::ExactSum> sum;
     nodes.broadcast<&Node::add_exactly>(sum.callback());
-    CHECK((co_await sum).total() == exact.total());
+    const tess::ExactSum all = co_await sum;
+    CHECK(all.total() == exact.total());
   });
 }
 

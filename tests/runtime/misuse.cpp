@@ -480,6 +480,7 @@ const std::map<std::string, std::function<void()>> misuses{
     {"array_after_end", [] { const tess::Task task = use_after_end(); }},
     {"proxy_of_the_past", &send_to_the_past},
     {"run_in_a_run", &run_again},
+    {"setup_again", [] {}},
     {"balance_after_end", [] { const tess::Task task = balance_after_end(); }},
     {"group_after_end", [] { const tess::Task task = use_member_after_end(); }},
 };
@@ -491,7 +492,8 @@ int misuse(int argc, char** argv) {
     for (const auto& [name, function] : misuses) tess::print(name, "\n");
     return 0;
   }
-  return tess::run(setup, at->second);
+  const int code = tess::run(setup, at->second);
+  return at->first == "setup_again" ? tess::run(setup, [] {}) : code;
 }
 
 }  // namespace

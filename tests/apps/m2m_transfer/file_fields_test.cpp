@@ -179,6 +179,9 @@ TEST_CASE("fields, steps and weights that do not exist are refused by name", "[m
              Catch::Contains("source.exo: has no variable 'tmp' at vertices; it has: temp, v") &&
                  Catch::Contains("steps 0..19"));
   CHECK_THAT(changed([](auto& r) { r.step = "20"; }), Catch::Contains("has no step 20"));
+  CHECK_THAT(changed([](auto& r) { r.step = "99999999999999999999"; }),
+             Catch::Contains("--step 99999999999999999999 is no step"));
+  CHECK_THAT(changed([](auto& r) { r.step = "-1"; }), Catch::Contains("--step -1 is no step"));
   CHECK_THAT(changed([](auto& r) { r.step = "last"; }), Catch::Contains("--step last is no step"));
   CHECK_THAT(changed([](auto& r) {
                r.step = "1";

@@ -1,0 +1,145 @@
+// What a run made is known as made in the run that goes on with its checkpoint, and in the one after
+// that.
+#include "runtime/checkpoint.hpp"
+#include "runtime/runtime.hpp"
+#include "runtime/when.hpp"
+#include "tests/support/adversarial.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/scratch.hpp"
+
+#include <chrono>
+#include <memory>
+#include <numeric>
+
+namespace {
+
+using namespace std::chrono_literals;
+
+class Leaf : public tess::Chare<Leaf> {
+ public:
+  void count(const tess::Callback<int>& target) { contribute(tess::sum, 1, target); }
+  template <class Ar>
+  void serialize(Ar& /*ar*/) {}
+};
+
+/// It makes arrays and sections of its array, and keeps them.
+class Maker : public tess::Chare<Maker> {
+ public:
+  void make(int a, int b) {
+    const std::vector<tess::Index1> members{{a}, {b}};
+    sections_.push_back(tess::create_section(array(), members));
+    leaves_.push_back(tess::create<Leaf>(tess::range(3)));
+  }
+  void make_and_end() { tess::create<Leaf>(tess::range(3)).destroy(); }
+  void call(std::size_t section, int x) { sections_.at(section).broadcast<&Maker::hit>(x); }
+  void hit(int x) { hits_ += x; }
+  void report(const tess::Callback<std::vector<int>>& target) {
+    contribute(tess::in_order(tess::concatenate), std::vector<int>{hits_}, target);
+  }
+  void count(std::size_t array, const tess::Callback<int>& target) {
+    leaves_.at(array).broadcast<&Leaf::count>(target);
+  }
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(sections_, leaves_, hits_);
+  }
+
+ private:
+  std::vector<tess::SectionProxy<Maker>> sections_;
+  std::vector<tess::ArrayProxy<Leaf>> leaves_;
+  int hits_ = 0;
+};
+
+struct State {
+  tess::ArrayProxy<Maker> makers;
+  tess::Timer timer;
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(makers, timer);
+  }
+};
+constexpr int n = 8;
+
+tess::Task begin(std::string folder) {
+  State state;
+  state.makers = tess::create<Maker>(tess::range(n));
+  co_await tess::epoch([&] {
+    for (int i = 0; i < n; ++i) {
+      state.makers[{i}].send<&Maker::make>(i, (i + 1) % n);
+      state.makers[{i}].send<&Maker::make_and_end>();
+    }
+    state.timer = tess::after(1us, [] {});
+  });
+  co_await tess::checkpoint(folder, state);
+}
+
+tess::Task go_on(std::string folder) {
+  auto state = co_await tess::restart<State>(folder);
+  co_await tess::checkpoint(folder, state);
+}
+
+/// All elements make a section and an array, and use both.
+tess::Task use(std::string folder) {
+  const auto state = co_await tess::restart<State>(folder);
+  co_await tess::epoch([&] {
+    for (int i = 0; i < n; ++i) state.makers[{i}].send<&Maker::make>((i + 2) % n, (i + 5) % n);
+  });
+  co_await tess::epoch([&] {
+    for (int i = 0; i < n; ++i)
+      for (const int section : {0, 1})
+        state.makers[{i}].send<&Maker::call>(static_cast<std::size_t>(section),
+                                             section == 0 ? 1 : 100);
+  });
+  tess::Future<std::vector<int>> hits;
+  state.makers.broadcast<&Maker::report>(hits.callback());
+  const std::vector<int> found = co_await hits;
+  CHECK(found == std::vector<int>(n, 202));  // each is in two sections of either kind
+  for (const std::size_t array : {0U, 1U}) {
+    tess::Future<int> n_leaves;
+    state.makers[{n - 1}].send<&Maker::count>(array, n_leaves.callback());
+    CHECK(co_await n_leaves == 3);
+  }
+}
+
+tess::Task time(std::string folder) {
+  const auto state = co_await tess::restart<State>(folder);
+  const auto n_ticks = std::make_shared<int>(0), n_runs = std::make_shared<int>(0);
+  const tess::Timer ticks = tess::every(10ms, [n_ticks] { ++*n_ticks; });
+  std::vector<tess::Timer> fresh;
+  for (int i = 0; i < 20; ++i) fresh.push_back(tess::after(10ms, [n_runs] { ++*n_runs; }));
+  state.timer.cancel();      // it has run, before the checkpoint
+  co_await tess::sleep(3s);  // messages are late here by fractions of a second
+  ticks.cancel();
+  CHECK(*n_ticks > 10);
+  CHECK(*n_runs == 20);
+}
+
+void run(const std::function<tess::Task()>& main, std::uint64_t seed, int n_pes) {
+  CAPTURE(seed, n_pes);
+  tess::Setup setup = tess::test::adversarial(n_pes, seed);
+  CHECK(tess::run(setup, main) == 0);
+}
+
+}  // namespace
+
+TEST_CASE("arrays and sections have new numbers after restarts on fewer and on more PEs",
+          "[runtime][checkpoint]") {
+  for (std::uint64_t seed = 0; seed < 5; ++seed)
+    for (const int fewer : {1, 2, 4}) {
+      const tess::test::Scratch scratch;
+      const std::string folder = scratch.path("saved");
+      run([&] { return begin(folder); }, seed, 4);
+      run([&] { return go_on(folder); }, seed, fewer);
+      for (const int n_pes : {fewer, 3, 4}) run([&] { return use(folder); }, seed, n_pes);
+    }
+}
+
+TEST_CASE("timers tick after a restart, and one of the run before names none of them",
+          "[runtime][checkpoint]") {
+  for (const int n_pes : {1, 4}) {
+    const tess::test::Scratch scratch;
+    const std::string folder = scratch.path("saved");
+    run([&] { return begin(folder); }, 1, 4);
+    run([&] { return time(folder); }, 2, n_pes);
+  }
+}
