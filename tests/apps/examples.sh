@@ -137,5 +137,8 @@ answers '^ +0 +4 +16 greedy ' "${lab[@]}" --replay "${files[0]}" --replay "${fil
 answers '^ +0 +4 +16 greedy ' "${lab[@]}" --replay "${files[@]}" --pes 1 --json "$scratch/replayed.json"
 grep -q '"strategy": "greedy"' "$scratch/replayed.json"
 check "lb_lab --replay --json writes no rows" $?
+timeout 60 "${lab[@]}" --workload linear --per-pe 4 --iterations 10 --period 5 --sim pes=2,cost=1us --save-snapshot "$scratch/snapshots" --snapshot-format json >"$scratch/out" 2>&1
+[[ $(echo "$scratch"/snapshots/linear-4-greedy/*) == "$scratch/snapshots/linear-4-greedy/data.0.json $scratch/snapshots/linear-4-greedy/data.1.json" ]]
+check "files of a run on more PEs stay in the folder of snapshots" $?
 
 finish

@@ -130,6 +130,20 @@ std::string explain_text(const Settings& s, std::int32_t n_pes) {
   return out;
 }
 
+namespace {
+
+/// A replay takes all files of a folder: those of a run before, on more PEs or in another format, go.
+void remove_snapshots(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> old;
+  for (const auto& entry : std::filesystem::directory_iterator(folder))
+    if (std::string name = entry.path().filename().string();
+        name.starts_with("data.") && (name.ends_with(".json") || name.ends_with(".json.br")))
+      old.push_back(entry.path());
+  for (const std::filesystem::path& path : old) std::filesystem::remove(path);
+}
+
+}  // namespace
+
 void save_snapshots(const Settings& s, const Row& row, const Outcome& outcome) {
   if (outcome.phases.empty()) return;
   const std::filesystem::path folder =
@@ -140,6 +154,7 @@ void save_snapshots(const Settings& s, const Row& row, const Outcome& outcome) {
   if (error)
     tess::fail(tess::ErrorCode::environment, "--save-snapshot: ", folder.string(), ": ",
                error.message());
+  remove_snapshots(folder);
   for (std::int32_t pe = 0; pe < row.n_pes; ++pe) {
     const std::string file = (folder / fmt::format("data.{}.{}", pe, s.snapshot_format)).string();
     const std::string text = tess::balance::write_lb_datafile(outcome.phases, tess::PeId{pe});
