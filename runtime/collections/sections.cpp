@@ -168,6 +168,13 @@ bool Sections::join(Element& element, SectionId id, std::uint32_t ordinal) {
   member.ordinal = ordinal;
   member.joined = true;
   of->slots[ordinal] = seat.slot;
+  // A result may be delivered meanwhile: then the seat is another one, or the section has ended.
+  for (auto& [epoch, value] : std::exchange(member.held, {})) {
+    seat = find(element, id);
+    if (seat.part != nullptr)
+      seat.part->reduction.contribute(seat.member().next++, epoch, std::move(value));
+    collection_.pe().completion().processed(epoch);
+  }
   --element.n_suspended_;
   return true;
 }
@@ -263,8 +270,11 @@ Sections::Seat Sections::find_contributor(SectionPart& part, Element& element) {
 }
 
 void Sections::contribute(const Seat& seat, std::unique_ptr<Partial> value) {
-  seat.part->reduction.contribute(seat.member().next++, collection_.pe().context().epoch,
-                                  std::move(value));
+  SectionPart::Member& member = seat.member();
+  const EpochId epoch = collection_.pe().context().epoch;
+  if (member.joined) return seat.part->reduction.contribute(member.next++, epoch, std::move(value));
+  collection_.pe().completion().sent(epoch);
+  member.held.push_back({epoch, std::move(value)});
 }
 
 void Sections::move_slot(SectionPart& part, std::uint32_t from, std::uint32_t to) {
@@ -349,6 +359,7 @@ void Sections::free(std::unique_ptr<SectionPart> part, std::vector<Element*>& re
   for (SectionPart::Member& member : part->members) {
     settle_early(pe, member.early);
     if (!member.joined) {
+      for (const auto& held : member.held) pe.completion().processed(held.epoch);
       --member.element->n_suspended_;
       released.push_back(member.element);
     }

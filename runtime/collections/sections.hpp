@@ -3,7 +3,8 @@
 //
 // An element becomes a member by the message Join, which the section's root sends to each index of
 // its list. Until then it may contribute already: then it neither moves nor ends before Join has
-// reached it. So a member that ends always knows that it is one, and reports its end to the root.
+// reached it, and its contributions wait with it, since it may be no member. So a member that ends
+// always knows that it is one, and reports its end to the root.
 //
 // A member receives each multicast once, since the root sends it once (see SectionLists), and in the
 // order of the numbers: what arrives before its turn waits with the member.
@@ -64,6 +65,11 @@ class SectionPart final : public SectionHost {
     std::uint64_t listed = 0;  // the generation of lists that has it on this PE; 0: none
     bool joined = false;
     std::vector<SectionCall> early;
+    struct Held {
+      EpochId epoch;
+      std::unique_ptr<Partial> value;
+    };
+    std::vector<Held> held;  // its contributions before it has joined
   };
 
   Sections& sections;

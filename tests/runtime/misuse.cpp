@@ -274,6 +274,27 @@ tess::Task sum_of_empty_section() {
   (void)co_await sum;
 }
 
+/// Contributes to a section of which it may be no member.
+class Stranger : public tess::Chare<Stranger> {
+ public:
+  void vote(tess::SectionProxy<Stranger> section, const tess::Callback<int>& target) {
+    contribute(section, tess::sum, index().x, target);
+  }
+  template <class Ar>
+  void serialize(Ar& /*ar*/) {}
+};
+
+/// Of the section {0, 2, 4}. A result would end the run without an error.
+tess::Task votes_of(std::vector<int> voters) {
+  const auto all = tess::create<Stranger>(tess::range(12));
+  const std::vector<tess::Index1> members{{0}, {2}, {4}};
+  const auto section = tess::create_section(all, members);
+  tess::Future<int> sum;
+  for (const int voter : voters) all[{voter}].send<&Stranger::vote>(section, sum.callback());
+  (void)co_await sum;
+  tess::exit(0);
+}
+
 tess::Task any_of_none() {
   std::vector<tess::Future<int>> none;
   (void)co_await tess::when_any(std::move(none));
@@ -466,6 +487,14 @@ const std::map<std::string, std::function<void()>> misuses{
     {"mean_of_none", [] { const tess::Task task = mean_of_none<&Meter::give>(); }},
     {"ordered_mean_of_none", [] { const tess::Task task = mean_of_none<&Meter::give_in_order>(); }},
     {"section_mean_of_none", [] { const tess::Task task = mean_of_none_in_section(); }},
+    {"stranger_votes",
+     [] {
+       const tess::Task task = votes_of({0, 2, 7});
+     }},
+    {"strangers_vote",
+     [] {
+       const tess::Task task = votes_of({7, 8, 9, 0, 2});
+     }},
     {"destructor_sends", [] { tess::create<Parting>(tess::range(3)); }},
     {"array_not_known",
      [] {

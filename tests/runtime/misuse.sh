@@ -77,6 +77,8 @@ here negative_argument "an argument is -1, but the entry method takes 0 to 18446
 everywhere mean_of_none "uncaught exception: the mean of no values" "on PE ., at the end of a reduction of Meter"
 here ordered_mean_of_none "the mean of no values" "on PE ., at the end of a reduction of Meter"
 here section_mean_of_none "the mean of no values" "on PE ., at the end of a reduction of a section of Meter"
+everywhere stranger_votes "Stranger\[7\] contributes to a section that it is no member of"
+here strangers_vote "Stranger\[7\] contributes to a section that it is no member of"
 everywhere destructor_sends "the destructor of Parting calls the runtime after the end of the run: destroy() the array or group before"
 here array_not_known "the array of this proxy is not known yet on PE 0: create it inside an awaited epoch"
 here group_not_known "this group is not known yet on PE 0: create it inside an awaited epoch"

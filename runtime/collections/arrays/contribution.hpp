@@ -52,6 +52,7 @@ struct ToSection {
   Sections::Seat seat;
 
   [[nodiscard]] Partial* open_sum(const PartialKind& kind) const {
+    if (!seat.member().joined) return nullptr;
     return seat.part->reduction.open_sum(seat.member().next, kind,
                                          sections.collection().pe().context().epoch);
   }
