@@ -36,9 +36,9 @@ namespace apps {
 class Checkpoints {
  public:
   void add_options(CommandLine& line);
-  /// Throws tess::Error for values that cannot be used, and for a folder with checkpoints of another
-  /// run. `of_problem`: the options whose values a restart cannot change. Called before the program
-  /// changes the values of its options.
+  /// Throws tess::Error for values that cannot be used, and for a folder with checkpoints of
+  /// another run. `of_problem`: the options whose values a restart cannot change. Called before the
+  /// program changes the values of its options.
   void check(const CommandLine& line, const std::vector<std::string>& of_problem);
 
   /// True if --checkpoint or --restart is given.

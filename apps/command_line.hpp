@@ -74,8 +74,8 @@ class CommandLine {
   std::string group_ = "Options";
 };
 
-/// Throws tess::Error (bad_argument): two options are given of which each works only without the other.
-/// Both as they were given: "--steps 5".
+/// Throws tess::Error (bad_argument): two options are given of which each works only without the
+/// other. Both as they were given: "--steps 5".
 [[noreturn]] void refuse_together(std::string_view option, std::string_view other);
 
 }  // namespace apps

@@ -1,5 +1,5 @@
-// The text of --help, in the layout of the runtime's own options: the option and what it takes, then
-// its meaning from column 14 on, with its range and its default, at most 100 columns wide.
+// The text of --help, in the layout of the runtime's own options: the option and what it takes,
+// then its meaning from column 14 on, with its range and its default, at most 100 columns wide.
 //
 //   --steps N   applications of all pairs, with the donors of one search (default 1)
 #pragma once
@@ -9,7 +9,8 @@
 
 namespace apps {
 
-/// Reads what an option takes from its type name, and its range from the descriptions of its checks.
+/// Reads what an option takes from its type name, and its range from the descriptions of its
+/// checks.
 class HelpText : public CLI::Formatter {
  public:
   std::string make_help(const CLI::App* app, std::string name,

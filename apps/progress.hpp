@@ -1,6 +1,6 @@
-// A line on a terminal that reports the progress of long work, rewritten in place. It costs the work
-// one store per phase: a sleeping thread does the rest, and only if the output is a terminal. Nothing
-// is shown before the work has taken a second.
+// A line on a terminal that reports the progress of long work, rewritten in place. It costs the
+// work one store per phase: a sleeping thread does the rest, and only if the output is a terminal.
+// Nothing is shown before the work has taken a second.
 #pragma once
 
 #include <atomic>
@@ -15,9 +15,9 @@
 
 namespace apps {
 
-/// Seconds until all of `n_parts` parts are done, if part `part` (from 1) began `began` seconds after
-/// the first and has lasted `lasted` seconds: the parts to come take as long as those before on
-/// average. None while the first part runs.
+/// Seconds until all of `n_parts` parts are done, if part `part` (from 1) began `began` seconds
+/// after the first and has lasted `lasted` seconds: the parts to come take as long as those before
+/// on average. None while the first part runs.
 [[nodiscard]] std::optional<double> seconds_left(std::uint32_t part, std::uint32_t n_parts,
                                                  double began, double lasted) noexcept;
 

@@ -1,7 +1,7 @@
-// A tree of boxes over numbered objects: the one tree of the spatial queries (queries.hpp) and of the
-// surfaces of the distance/normal field (dn_field/bvh.hpp). Objects are split at the median of their
-// centres along the widest axis, down to leaves of at most four. The order of the centres decides,
-// and then the object's number, so equal centres do no harm.
+// A tree of boxes over numbered objects: the one tree of the spatial queries (queries.hpp) and of
+// the surfaces of the distance/normal field (dn_field/bvh.hpp). Objects are split at the median of
+// their centres along the widest axis, down to leaves of at most four. The order of the centres
+// decides, and then the object's number, so equal centres do no harm.
 //
 //     objects of a leaf: places node.first … node.first + node.count; inner node: two children,
 //     node.first and node.first + 1, which follow it in nodes()
@@ -15,8 +15,8 @@
 
 namespace tess::collide {
 
-/// `Box` is the caller's, and so are the boxes of the nodes: the caller sets them, from the last node
-/// to the first. Immutable after that; queries may run on any thread.
+/// `Box` is the caller's, and so are the boxes of the nodes: the caller sets them, from the last
+/// node to the first. Immutable after that; queries may run on any thread.
 template <class Box, std::size_t D>
 class BoxTree {
  public:

@@ -10,8 +10,8 @@
 
 namespace tess::collide {
 
-/// If a number of it is NaN or infinite, or the radius negative, nothing is known of the object: it is
-/// searched by its box.
+/// If a number of it is NaN or infinite, or the radius negative, nothing is known of the object: it
+/// is searched by its box.
 struct Capsule {
   Point from;
   Point to;
@@ -26,9 +26,9 @@ inline constexpr Capsule unknown_capsule{{}, {}, std::numeric_limits<double>::in
 /// The capsule, or unknown_capsule if nothing is known of the object.
 [[nodiscard]] Capsule checked(const Capsule& capsule) noexcept;
 
-/// A capsule that contains the convex hull of one or more points, whatever is rounded: around the segment
-/// between the two points that are farthest apart. The radius is at most sqrt(3) times the least for
-/// that segment, and some roundings.
+/// A capsule that contains the convex hull of one or more points, whatever is rounded: around the
+/// segment between the two points that are farthest apart. The radius is at most sqrt(3) times the
+/// least for that segment, and some roundings.
 [[nodiscard]] Capsule capsule_around(std::span<const Point> points) noexcept;
 
 }  // namespace tess::collide

@@ -115,8 +115,8 @@ Task search(Collider collider, std::uint64_t step, Report report) {
   co_await collide_taken(collider, own_step, summary, report);
 }
 
-/// Finds pairs to keep. Sets `too_many` if they are, and then nothing is kept; if they are by far, larger
-/// boxes are not searched.
+/// Finds pairs to keep. Sets `too_many` if they are, and then nothing is kept; if they are by far,
+/// larger boxes are not searched.
 Task find_kept(Collider collider, std::uint64_t step, bool& too_many) {
   const std::uint64_t own_step = remaining(collider).new_step();
   Future<Summary> known;

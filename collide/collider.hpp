@@ -17,7 +17,8 @@
 //     const tess::collide::Report report{tess::collide::report_to<&Client::receive>(clients), {}};
 //     co_await tess::collide::run_collision(collider, report);
 //
-// The report has a name before the co_await: g++ 12 destroys an aggregate twice that is written in one.
+// The report has a name before the co_await: g++ 12 destroys an aggregate twice that is written in
+// one.
 //
 // submit() is a call to the local Manager, so the epoch that makes the collider is awaited first
 // (submit_early() does without). Before a collision, the main coroutine awaits an epoch
@@ -27,8 +28,9 @@
 // clients submit for the next one only when the objects of the one before are taken on all PEs,
 // which it reports: a collision takes what it finds on each PE.
 //
-// Long thin objects may be submitted with capsules (capsule.hpp). If that pays, they are searched in
-// pieces, and pairs whose capsules are certainly apart are not reported: the receiver tests fewer.
+// Long thin objects may be submitted with capsules (capsule.hpp). If that pays, they are searched
+// in pieces, and pairs whose capsules are certainly apart are not reported: the receiver tests
+// fewer.
 //
 // Objects that move little from a collision to the next: give ColliderOptions::slack. Then most
 // collisions only test pairs that were near before.
@@ -60,17 +62,17 @@ struct Collider {
   ColliderOptions options;
   GroupProxy<Neighbours> neighbours{};  ///< if there is a slack
 
-  /// Pass objects of a client on this PE to the local Manager, or Neighbours, which copies them. They
-  /// throw Error as it does.
+  /// Pass objects of a client on this PE to the local Manager, or Neighbours, which copies them.
+  /// They throw Error as it does.
   void submit(const Objects& objects) const;
   void submit(const std::vector<Item>& items, std::span<const Capsule> capsules = {}) const;
   /// The same within the epoch that creates the collider. If it is not known on this PE yet, the
   /// objects are a message that waits for it; then a box that is not valid ends the job.
   void submit_early(Submission objects) const;
 
-  /// Frees the voxels, their balancer and the Managers on all PEs. The enclosing epoch includes this.
-  /// It is an error while a collision runs, whose hits would be lost: it ends the job with a message,
-  /// at once if this PE started the collision or has not sent its objects yet.
+  /// Frees the voxels, their balancer and the Managers on all PEs. The enclosing epoch includes
+  /// this. It is an error while a collision runs, whose hits would be lost: it ends the job with a
+  /// message, at once if this PE started the collision or has not sent its objects yet.
   void destroy() const;
 };
 
@@ -81,8 +83,8 @@ struct Collider {
 
 /// Collides all objects that were submitted. When the task is done, the owners have handled all
 /// hits. Calls `taken`, unless it is empty, when clients may submit for the next collision. Throws
-/// Error: bad_argument for a report without a call; out_of_range if a coordinate exceeds the range of
-/// cells, and then the objects are dropped.
+/// Error: bad_argument for a report without a call; out_of_range if a coordinate exceeds the range
+/// of cells, and then the objects are dropped.
 Task run_collision(Collider collider, Report report, Callback<void> taken = {});
 
 /// What the last collision did, for example

@@ -15,13 +15,13 @@ struct ColliderOptions {
   /// Of the smallest voxels. Zero: chosen in each collision by expected cost, with an origin.
   Point size{0, 0, 0};
   PairRules rules{};
-  /// Of objects with capsules. Infinite: they are whole. Zero: chosen in each collision by expected cost,
-  /// with the size of the voxels; whole if that is given.
+  /// Of objects with capsules. Infinite: they are whole. Zero: chosen in each collision by expected
+  /// cost, with the size of the voxels; whole if that is given.
   double piece_length = 0;
-  /// A length, for objects that move little from a collision to the next. If positive, a collision also
-  /// finds pairs of boxes that are larger by it on each side, and keeps them. While the same objects are
-  /// submitted, each within its larger box, the collisions after it test these pairs alone. The hits are
-  /// the same. Objects have no capsules then.
+  /// A length, for objects that move little from a collision to the next. If positive, a collision
+  /// also finds pairs of boxes that are larger by it on each side, and keeps them. While the same
+  /// objects are submitted, each within its larger box, the collisions after it test these pairs
+  /// alone. The hits are the same. Objects have no capsules then.
   double slack = 0;
 };
 

@@ -7,8 +7,8 @@ namespace tess::collide {
 
 /// Squared distance from `p`; 0 in a box, ball or tetrahedron. The relative error is below 2^-43,
 /// also for needles and next to the surface: what cancels is computed exactly. That of a ball is
-/// relative to the squared radius where it is larger. Squares overflow beyond distances of 1e154, and
-/// underflow below 1e-154.
+/// relative to the squared radius where it is larger. Squares overflow beyond distances of 1e154,
+/// and underflow below 1e-154.
 [[nodiscard]] double distance2(const Point& object, const Point& p) noexcept;
 [[nodiscard]] double distance2(const Aabb& object, const Point& p) noexcept;
 [[nodiscard]] double distance2(const Segment& object, const Point& p) noexcept;

@@ -10,14 +10,15 @@
 
 namespace tess::collide {
 
-/// Objects of one owner and model, numbered from `first` on. submit() copies the boxes and capsules:
-/// they must live until it returns.
+/// Objects of one owner and model, numbered from `first` on. submit() copies the boxes and
+/// capsules: they must live until it returns.
 struct Objects {
   OwnerId owner{};
   ModelId model{};
   std::span<const Aabb> boxes;
   LocalId first{};
-  /// Of long thin objects, one per box, or none. Pairs whose capsules are certainly apart are no hits.
+  /// Of long thin objects, one per box, or none. Pairs whose capsules are certainly apart are no
+  /// hits.
   std::span<const Capsule> capsules{};
 };
 

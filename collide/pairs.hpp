@@ -44,8 +44,8 @@ struct Pair {
   friend auto operator<=>(const Pair&, const Pair&) = default;
 };
 
-/// How the pairs of one voxel are found. `automatic` chooses by measured costs; all of them find the
-/// same pairs. `bisection` is the paper's recursive coordinate bisection.
+/// How the pairs of one voxel are found. `automatic` chooses by measured costs; all of them find
+/// the same pairs. `bisection` is the paper's recursive coordinate bisection.
 enum class PairMethod { automatic, all_pairs, sweep, bisection };
 
 /// What a search did.
@@ -55,7 +55,8 @@ struct PairStatistics {
   std::uint64_t n_voxels = 0;    ///< that were searched
   std::uint64_t n_entries = 0;   ///< objects in voxels: an object counts in each that it touches
   std::uint64_t n_left_out = 0;  ///< of them, in voxels that only one model touches
-  /// Pairs whose boxes overlap. If long thin objects are searched in pieces, these are pairs of pieces.
+  /// Pairs whose boxes overlap. If long thin objects are searched in pieces, these are pairs of
+  /// pieces.
   std::uint64_t n_candidates = 0;
   std::uint64_t n_pairs = 0;  ///< pairs that intersect
   std::size_t bytes = 0;      ///< memory beside the objects
@@ -144,8 +145,8 @@ Capsules capsules_of(std::span<const Object> objects) {
 
 }  // namespace detail
 
-/// What a client submits with the boxes of its objects (Objects in collider.hpp): the capsules, or none if
-/// the objects are so short or thick that they would not pay.
+/// What a client submits with the boxes of its objects (Objects in collider.hpp): the capsules, or
+/// none if the objects are so short or thick that they would not pay.
 template <detail::HasCapsule Object>
 [[nodiscard]] std::vector<Capsule> thin_capsules_of(std::span<const Object> objects) {
   std::vector<Capsule> out;
@@ -196,8 +197,9 @@ struct EveryPair {
 
 /// Calls found(i, j) once per pair of objects that intersect, with i < j. With a filter, only pairs
 /// count for which wanted(i, j) is true; it is asked before the exact test, once per pair of boxes
-/// that overlap (of objects with capsules at most once: not if the capsules are apart). Throws Error (bad_value) before the first call, with the position of an object
-/// whose box is not valid, or if the voxel size is no size or too small for the memory.
+/// that overlap (of objects with capsules at most once: not if the capsules are apart). Throws
+/// Error (bad_value) before the first call, with the position of an object whose box is not valid,
+/// or if the voxel size is no size or too small for the memory.
 template <class Object, class Found, class Wanted = EveryPair>
 void for_each_pair(std::span<const Object> objects, const PairOptions& options, Found&& found,
                    const Wanted& wanted = {}) {

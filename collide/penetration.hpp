@@ -1,5 +1,5 @@
-// Points inside of a closed surface, how deep they are, and the shortest way out. After a collision of
-// two models has found the triangles in contact, only their corners need be asked for:
+// Points inside of a closed surface, how deep they are, and the shortest way out. After a collision
+// of two models has found the triangles in contact, only their corners need be asked for:
 //
 //     const ClosedModel solid{std::span<const Triangle>(b)};
 //     for (const PenetratingPoint& p : penetrating_points(a, triangles_of_a_in_contact, solid)) …
@@ -25,8 +25,8 @@ struct Penetration {
 /// equal coordinates.
 class ClosedModel {
  public:
-  /// Throws Error (bad_mesh) for an edge without an opposite one, with the triangle and its corners,
-  /// and Error (bad_value) for a triangle that is not finite.
+  /// Throws Error (bad_mesh) for an edge without an opposite one, with the triangle and its
+  /// corners, and Error (bad_value) for a triangle that is not finite.
   explicit ClosedModel(std::span<const Triangle> triangles);
 
   /// How often the surface winds around `p`: 1 inside if its normals point outward, 0 outside. On

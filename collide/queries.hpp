@@ -1,7 +1,7 @@
-// Spatial queries over a set of objects: what lies within a radius of a point, the nearest, and what a
-// ray hits. An Index is built once, copies the objects, and never changes; queries may run on any
-// thread. Answers name objects by their position in the input. They do not depend on the order of
-// the input, but that the smaller position comes first among equals.
+// Spatial queries over a set of objects: what lies within a radius of a point, the nearest, and
+// what a ray hits. An Index is built once, copies the objects, and never changes; queries may run
+// on any thread. Answers name objects by their position in the input. They do not depend on the
+// order of the input, but that the smaller position comes first among equals.
 //
 //     const tess::collide::Index index{std::span<const Triangle>(triangles)};
 //     for (const Neighbour& n : index.nearest(point, 3)) use(triangles[n.object], n.distance2);
@@ -12,8 +12,8 @@
 //     double distance2(const Object&, const Point&);            for within() and nearest()
 //     std::optional<double> hit(const Object&, const Ray&);     for first_hit() and all_hits()
 //
-// Errors: Error (bad_value) for an object whose box is not valid, with its position, and for a query
-// that is not finite.
+// Errors: Error (bad_value) for an object whose box is not valid, with its position, and for a
+// query that is not finite.
 #pragma once
 
 #include "collide/box_tree.hpp"
@@ -116,8 +116,8 @@ class Index {
   [[nodiscard]] std::vector<std::uint32_t> within(const Point& p, double radius) const;
 
   /// The `k` nearest objects (fewer if there are no more), near ones first. Distances are rounded;
-  /// those that are equal then are equal here: also those below 1e-162 or above 1e154, whose squares
-  /// are zero or infinite.
+  /// those that are equal then are equal here: also those below 1e-162 or above 1e154, whose
+  /// squares are zero or infinite.
   [[nodiscard]] std::vector<Neighbour> nearest(const Point& p, std::size_t k) const;
 
   /// The object that a ray meets first, if it meets any.
@@ -206,8 +206,8 @@ std::vector<Neighbour> Index<Object>::nearest(const Point& p, std::size_t k) con
   tree_.descend_near([&](const Aabb& box) { return distance2(box, p); }, limit,
                      [&](const auto& leaf) {
                        tree_.each_place(leaf, [&](std::uint32_t i) {
-                         // Not less than the distance of its box, whatever is rounded. So the order in which the
-                         // tree is visited has no influence.
+                         // Not less than the distance of its box, whatever is rounded. So the order
+                         // in which the tree is visited has no influence.
                          const double to_box = distance2(detail::aabb_of(objects_[i]), p);
                          if (to_box > limit) return;
                          const double to_object = distance2(objects_[i], p);

@@ -15,8 +15,8 @@ struct Ray {
 };
 
 /// The least t at which a ray meets an object; 0 if it begins inside. Whether it meets is decided
-/// exactly, so no ray passes between triangles that share an edge or a corner. The relative error of
-/// t is below 2^-42. A ray does not hit a triangle in whose plane it lies.
+/// exactly, so no ray passes between triangles that share an edge or a corner. The relative error
+/// of t is below 2^-42. A ray does not hit a triangle in whose plane it lies.
 [[nodiscard]] std::optional<double> hit(const Aabb& object, const Ray& ray) noexcept;
 [[nodiscard]] std::optional<double> hit(const Triangle& object, const Ray& ray) noexcept;
 [[nodiscard]] std::optional<double> hit(const Sphere& object, const Ray& ray) noexcept;

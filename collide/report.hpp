@@ -30,9 +30,9 @@ struct Hits {
 /// either of them.
 enum class Receivers {
   both_owners,
-  /// One of the two. If an object of the pair was submitted on the PE that finds the pair, it is the
-  /// owner of this object, so most pairs stay on their PE and each PE has its share. Which one it is
-  /// may differ from run to run.
+  /// One of the two. If an object of the pair was submitted on the PE that finds the pair, it is
+  /// the owner of this object, so most pairs stay on their PE and each PE has its share. Which one
+  /// it is may differ from run to run.
   one_owner
 };
 

@@ -1,8 +1,9 @@
 // Balls, their boxes, and exact tests against points, segments, triangles, boxes and each other. A
 // ball is solid: what lies inside intersects it.
 //
-// Squared distances are compared exactly for all finite numbers; rounding never decides. If touching
-// does not count, the distance must be less than the radius. A ball of radius zero is a point.
+// Squared distances are compared exactly for all finite numbers; rounding never decides. If
+// touching does not count, the distance must be less than the radius. A ball of radius zero is a
+// point.
 #pragma once
 
 #include "collide/triangle.hpp"

@@ -1,7 +1,7 @@
 // Boxes that move over a time step: their box over the step, and when two of them first touch. This
 // is the fourth axis of the voxel method (Lawlor and Kalé 2002, section 2): a broad phase over
-// box_of() of swept boxes finds the pairs that may touch within the step, and intersect() those that
-// do.
+// box_of() of swept boxes finds the pairs that may touch within the step, and intersect() those
+// that do.
 #pragma once
 
 #include "collide/box.hpp"
@@ -30,7 +30,8 @@ template <class Box>
   return merged(swept.start, swept.end);
 }
 
-/// A capsule around the way of the centre: of a box that moves far it is much thinner than box_of().
+/// A capsule around the way of the centre: of a box that moves far it is much thinner than
+/// box_of().
 [[nodiscard]] Capsule capsule_of(const Swept<Aabb>& swept) noexcept;
 [[nodiscard]] inline Capsule capsule_of(const Swept<Box<float, 3>>& swept) noexcept {
   return capsule_of(Swept<Aabb>{in_double(swept.start), in_double(swept.end)});

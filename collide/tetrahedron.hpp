@@ -2,8 +2,8 @@
 // each other. A tetrahedron is solid: what lies inside intersects it.
 //
 // The tests are exact for all finite coordinates, degenerate tetrahedra included (those without
-// volume). If touching does not count, the intersection must survive every small enough translation:
-// a point must be strictly inside, two tetrahedra must have common interior.
+// volume). If touching does not count, the intersection must survive every small enough
+// translation: a point must be strictly inside, two tetrahedra must have common interior.
 #pragma once
 
 #include "collide/sphere.hpp"

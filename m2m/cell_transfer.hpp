@@ -1,5 +1,5 @@
-// Moves fields in the elements of one mesh to the tetrahedra of another that overlaps it. The library
-// cuts both meshes. What a kind makes of cells:
+// Moves fields in the elements of one mesh to the tetrahedra of another that overlaps it. The
+// library cuts both meshes. What a kind makes of cells:
 //
 // | kind                   | value of a target cell                                    | order |
 // |------------------------|-----------------------------------------------------------|-------|
@@ -11,10 +11,10 @@
 // | `conservative_bounded` | the same, kept within the source cells around             | 2     |
 // | `conservative_lumped`  | mean over what overlaps it of the source cells' values    | 1     |
 //
-// Kinds with gradients are exact for linear fields; limits lower the order at extrema and boundaries.
-// An element that was split is one cell of the source (TetMesh::element_of_tet). In the target each of
-// its tetrahedra gets a value of its own. The result depends only on the meshes and the
-// fields, as for transfers between vertices.
+// Kinds with gradients are exact for linear fields; limits lower the order at extrema and
+// boundaries. An element that was split is one cell of the source (TetMesh::element_of_tet). In the
+// target each of its tetrahedra gets a value of its own. The result depends only on the meshes and
+// the fields, as for transfers between vertices.
 #pragma once
 
 #include "m2m/field.hpp"

@@ -1,5 +1,5 @@
-// NaN in a field is a value as any other: a target point whose donors have one gets NaN. This counts
-// such points after a transfer.
+// NaN in a field is a value as any other: a target point whose donors have one gets NaN. This
+// counts such points after a transfer.
 #pragma once
 
 #include <cmath>

@@ -102,8 +102,8 @@ struct AnyCoupling::State {
   void enter(const char* phase) const {
     if (options.on_phase) options.on_phase(phase);
   }
-  /// Ends the job if the handle cannot be used: it has no arrays, an array has ended, or a copy of the
-  /// handle has destroyed the coupling. `use`: "searched" or "applied".
+  /// Ends the job if the handle cannot be used: it has no arrays, an array has ended, or a copy of
+  /// the handle has destroyed the coupling. `use`: "searched" or "applied".
   void require_usable(const char* use) const {
     TESS_CHECK(source.id() != CollectionId{} && target.id() != CollectionId{},
                "a coupling without arrays is ", use,

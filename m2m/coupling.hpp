@@ -32,13 +32,14 @@
 // without the main coroutine: a source piece calls its m2m_give() when its values are ready, and a
 // target piece's received() is called when all of its rows are there.
 //
-// Kinds with gradients need a halo of two layers of tetrahedra around each source piece, conservative
-// kinds one around each target piece (MeshView::n_own_tets, transfer_kind.hpp), so that the result
-// does not depend on how the mesh is cut.
+// Kinds with gradients need a halo of two layers of tetrahedra around each source piece,
+// conservative kinds one around each target piece (MeshView::n_own_tets, transfer_kind.hpp), so
+// that the result does not depend on how the mesh is cut.
 //
 // Conservative kinds also take and give values in cells (CouplingOptions::source_values): cells get
 // the mean of the source over what it covers of them. Their status is `inside` if the source covers
-// the cell, or all cells around the point, `snapped` if it covers them in part, otherwise `outside`.
+// the cell, or all cells around the point, `snapped` if it covers them in part, otherwise
+// `outside`.
 //
 // The result depends only on the meshes and the fields: not on the number of PEs or pieces, the
 // voxels, or the order of messages.
@@ -90,7 +91,8 @@ struct SearchSummary {
 struct CouplingSetup;
 struct LedgerPage;
 
-/// A coupling between arrays of any class: what does not depend on that. A handle: it can be copied.
+/// A coupling between arrays of any class: what does not depend on that. A handle: it can be
+/// copied.
 class AnyCoupling {
  public:
   AnyCoupling();
@@ -147,7 +149,8 @@ class Coupling : public AnyCoupling {
   ///     source_values are cells, a row per tetrahedron, or four if they are corners
   ///   Take: std::span<double> T::g(), n_owned × n_components; points without a donor keep theirs;
   ///     if target_values are cells, a row per own tetrahedron
-  /// Each may take the CouplingId. Each may also be a public std::vector<double>, such as &S::field.
+  /// Each may take the CouplingId. Each may also be a public std::vector<double>, such as
+  /// &S::field.
   template <auto Give, auto Take>
   Task apply() {
     return AnyCoupling::apply(detail::Giver(detail::GiverOf<S, Give>::kind),

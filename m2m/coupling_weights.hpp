@@ -17,8 +17,8 @@ namespace tess::m2m {
 
 struct GlobalRows;
 
-/// The matrix of rows over global ids. Throws Error (bad_value) if an id is not in range or a target
-/// occurs twice.
+/// The matrix of rows over global ids. Throws Error (bad_value) if an id is not in range or a
+/// target occurs twice.
 [[nodiscard]] WeightMatrix matrix_of(const GlobalRows& rows, std::int64_t n_sources,
                                      std::int64_t n_targets);
 

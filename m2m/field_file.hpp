@@ -28,8 +28,8 @@ namespace tess::m2m {
 class FieldFile {
  public:
   /// Opens the file, and reads the names of the fields and the times. Throws Error (bad_file,
-  /// bad_mesh) if it is damaged or of another format, (bad_argument) for a generated mesh, which has
-  /// no fields. One thread at a time, as for read_mesh().
+  /// bad_mesh) if it is damaged or of another format, (bad_argument) for a generated mesh, which
+  /// has no fields. One thread at a time, as for read_mesh().
   explicit FieldFile(const std::string& path);
   ~FieldFile();
   FieldFile(FieldFile&&) noexcept;

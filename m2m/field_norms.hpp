@@ -1,7 +1,8 @@
 // Norms, integrals and the hash of the values of a distributed mesh. Each part contributes to a
-// reduction, so no PE holds more than its parts and, for the hash, an equal range of the values. The
-// results are the same bit for bit for any number of parts, PEs and processes. Call these functions in
-// a coroutine, while no transfer of the mesh is running; give the request a name before the co_await.
+// reduction, so no PE holds more than its parts and, for the hash, an equal range of the values.
+// The results are the same bit for bit for any number of parts, PEs and processes. Call these
+// functions in a coroutine, while no transfer of the mesh is running; give the request a name
+// before the co_await.
 #pragma once
 
 #include "m2m/field.hpp"
@@ -25,9 +26,9 @@ struct FieldNorms {
   double truth_magnitude = 0;  ///< sum of m |truth|
 };
 
-/// Compares the values, and the status that the last transfer into the mesh gave, with the formulas at
-/// the points where they are now. Throws Error (bad_argument) if there are not as many formulas as
-/// components, or a formula has a mistake, (bad_value) with the vertex where one is not finite.
+/// Compares the values, and the status that the last transfer into the mesh gave, with the formulas
+/// at the points where they are now. Throws Error (bad_argument) if there are not as many formulas
+/// as components, or a formula has a mistake, (bad_value) with the vertex where one is not finite.
 Task measure_norms(DistributedMesh mesh, NormsRequest request, std::vector<FieldNorms>* out);
 
 /// The components of a field among those of a mesh.
@@ -37,8 +38,8 @@ struct FieldColumns {
 /// n fields of one component.
 [[nodiscard]] std::vector<FieldColumns> scalar_columns(std::uint64_t n);
 
-/// result_hash() of the fields one after the other, each in the order of the vertices, its rows in that
-/// of the components. `n_vertices`: of the whole mesh.
+/// result_hash() of the fields one after the other, each in the order of the vertices, its rows in
+/// that of the components. `n_vertices`: of the whole mesh.
 Task hash_values(DistributedMesh mesh, GlobalId n_vertices, std::vector<FieldColumns> fields,
                  std::uint64_t* hash);
 

@@ -15,8 +15,8 @@ double signed_volume(const TetMesh& mesh, std::size_t tet) {
   return signed_volume(corners);
 }
 
-// Each coordinate is read alone: a copy of the corners in vectors waits for the stores that have just
-// written them.
+// Each coordinate is read alone: a copy of the corners in vectors waits for the stores that have
+// just written them.
 double signed_volume(const std::array<Point, 4>& corners) {
   const double x = corners[0][0], y = corners[0][1], z = corners[0][2];
   const double ax = corners[1][0] - x, ay = corners[1][1] - y, az = corners[1][2] - z;

@@ -53,10 +53,10 @@ class MeshPiece : public Piece<C> {
   MeshPiece() = default;
 };
 
-/// An array of `n` chares of class C, a MeshPiece with a one-dimensional index. Each gets its part of
-/// the mesh before the enclosing epoch ends, with so many layers of tetrahedra of other parts around its
-/// own: source_halo_layers() and target_halo_layers() (transfer_kind.hpp) say how many a kind needs.
-/// Throws as mesh_parts() does.
+/// An array of `n` chares of class C, a MeshPiece with a one-dimensional index. Each gets its part
+/// of the mesh before the enclosing epoch ends, with so many layers of tetrahedra of other parts
+/// around its own: source_halo_layers() and target_halo_layers() (transfer_kind.hpp) say how many a
+/// kind needs. Throws as mesh_parts() does.
 template <class C>
 [[nodiscard]] ArrayProxy<C> create_pieces(const TetMesh& mesh, std::int32_t n,
                                           PartitionMethod method = PartitionMethod::curve,

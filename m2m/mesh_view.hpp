@@ -1,5 +1,5 @@
-// A mesh, or a part of it, as the owner of the data shows it: spans, so nothing is copied. A view is
-// valid during the call that it is passed to. Positions in `points` and `tets` are local ids.
+// A mesh, or a part of it, as the owner of the data shows it: spans, so nothing is copied. A view
+// is valid during the call that it is passed to. Positions in `points` and `tets` are local ids.
 #pragma once
 
 #include "m2m/mesh.hpp"
@@ -16,8 +16,8 @@ struct MeshView {
   std::span<const GlobalId>
       point_ids{};                      ///< per point; unique in the mesh; ties are decided by them
   std::span<const GlobalId> tet_ids{};  ///< per tetrahedron; unique in the mesh
-  /// The first n_owned points receive values. Those that are corners of tetrahedra here are vertices
-  /// that a point outside may be nearest to.
+  /// The first n_owned points receive values. Those that are corners of tetrahedra here are
+  /// vertices that a point outside may be nearest to.
   std::int64_t n_owned = 0;
   /// The first tetrahedra are the part's own. The others are a halo, for recovered gradients: they
   /// are also in other parts. -1: all are its own.
@@ -31,8 +31,8 @@ struct MeshView {
   }
 };
 
-/// Throws Error (bad_mesh) with the first point, index or list that cannot be used: coordinates must
-/// be finite and at most 1e100, corners in range, and ids as many as points and tetrahedra.
+/// Throws Error (bad_mesh) with the first point, index or list that cannot be used: coordinates
+/// must be finite and at most 1e100, corners in range, and ids as many as points and tetrahedra.
 void validate(const MeshView& mesh);
 
 }  // namespace tess::m2m

@@ -1,5 +1,6 @@
-// Overset meshes: holes are cut where other meshes have bodies, and values are exchanged around them.
-// Meshes overlap; each is an array of the application's own chares (coupling.hpp). For each mesh:
+// Overset meshes: holes are cut where other meshes have bodies, and values are exchanged around
+// them. Meshes overlap; each is an array of the application's own chares (coupling.hpp). For each
+// mesh:
 //
 //     wall     Wall: the surface of the body in it               overset_boundary(), or a file
 //     hole     its points inside or on walls of other meshes     exact, local to a piece
@@ -30,8 +31,8 @@
 //     });
 //
 // After that, apply() takes fields; a piece uses them where iblank() is negative. If a mesh moves:
-// cut, search and settle again. Send a large wall in parts (Wall::seen_from()). A body that contains
-// no point of another mesh cuts no hole.
+// cut, search and settle again. Send a large wall in parts (Wall::seen_from()). A body that
+// contains no point of another mesh cuts no hole.
 //
 // Roles, donors and qualities depend only on the meshes and the walls: not on the number of PEs or
 // pieces, or the order of messages.

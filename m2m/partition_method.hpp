@@ -1,6 +1,6 @@
 // The methods by which a mesh is cut into parts. All PEs compute `curve` together (place(),
-// placement.hpp), or one process for a mesh that it holds; the library Zoltan computes the others on
-// one process.
+// placement.hpp), or one process for a mesh that it holds; the library Zoltan computes the others
+// on one process.
 #pragma once
 
 #include <string>

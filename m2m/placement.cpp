@@ -33,8 +33,8 @@ Aabb checked_bounds(const PlacerReport& report, const PlacerSetup& setup) {
   return report.findings.bounds;
 }
 
-/// Reads and checks the mesh. `corners` gets the task of its messages about corners, some of which may
-/// be under way.
+/// Reads and checks the mesh. `corners` gets the task of its messages about corners, some of which
+/// may be under way.
 Task read_and_measure(GroupProxy<Placer> placers, PlacerSetup setup, MeshCensus* census,
                       std::vector<Task>& corners, Measured* measured_all) {
   Future<PlacerReport> read;

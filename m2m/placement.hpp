@@ -62,9 +62,9 @@ struct MeshSurvey {
 /// file that cannot be opened: they report it.
 [[nodiscard]] bool is_read_in_ranges(const std::string& name);
 
-/// Reads and checks a mesh by all PEs together, as place() does, and keeps nothing of it. `fields` are
-/// evaluated at every point. The errors are those of read_mesh(), validate(), make_formula() and
-/// sample(). `out` must outlive the task.
+/// Reads and checks a mesh by all PEs together, as place() does, and keeps nothing of it. `fields`
+/// are evaluated at every point. The errors are those of read_mesh(), validate(), make_formula()
+/// and sample(). `out` must outlive the task.
 Task survey(std::string name, std::vector<FormulaField> fields, MeshSurvey* out);
 
 /// The same of a mesh in memory, without fields, by the caller alone.

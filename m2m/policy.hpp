@@ -24,8 +24,8 @@ using OutsidePolicy = std::variant<Keep, UseValue, Nearest>;
 /// "keep", "value:0.5" or "nearest". Throws Error (bad_argument) for any other text.
 [[nodiscard]] OutsidePolicy parse_policy(const std::string& text);
 
-/// Writes the value of a UseValue to what is outside; other policies change nothing. `values`: a row
-/// per status.
+/// Writes the value of a UseValue to what is outside; other policies change nothing. `values`: a
+/// row per status.
 void fill_outside(const OutsidePolicy& policy, std::span<const Status> status,
                   std::span<double> values);
 

@@ -15,8 +15,8 @@ struct RigidMotion {
 };
 
 /// Moves the points. The result for a point depends on this point only, so a vertex that several
-/// parts hold stays the same in all of them, bit for bit. Throws Error (bad_argument) for a rotation
-/// about an axis without a length.
+/// parts hold stays the same in all of them, bit for bit. Throws Error (bad_argument) for a
+/// rotation about an axis without a length.
 void move_points(std::span<Point> points, const RigidMotion& motion);
 
 }  // namespace tess::m2m

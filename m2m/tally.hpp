@@ -8,8 +8,8 @@
 
 namespace tess::m2m {
 
-/// The number of target points per Status, of pairs (tetrahedron, point in its box) tested, and of source
-/// pieces that had not moved since the last search and kept what it had made of them.
+/// The number of target points per Status, of pairs (tetrahedron, point in its box) tested, and of
+/// source pieces that had not moved since the last search and kept what it had made of them.
 struct Tally {
   std::array<std::uint64_t, 4> counts{};
   std::uint64_t n_candidates = 0;

@@ -1,5 +1,5 @@
-// The target points that lie farthest from the source, of those that are not in it: where a coupling
-// deserves a look.
+// The target points that lie farthest from the source, of those that are not in it: where a
+// coupling deserves a look.
 #pragma once
 
 #include "m2m/mesh.hpp"

@@ -31,11 +31,11 @@ class ExodusSteps {
   ExodusSteps(const ExodusSteps&) = delete;
   ExodusSteps& operator=(const ExodusSteps&) = delete;
 
-  /// Adds a step. `vertex_fields` (n_points rows) become nodal variables, `tet_fields` (n_tets rows)
-  /// element variables. A field of three components becomes NAME_x, NAME_y, NAME_z; any other number
-  /// of components gives NAME_1, NAME_2, … The first step decides the names and components; all
-  /// steps have the same. Throws Error (bad_value) if a name is not usable or given twice, or if the
-  /// time is not after the last one, (environment) if the disk is full.
+  /// Adds a step. `vertex_fields` (n_points rows) become nodal variables, `tet_fields` (n_tets
+  /// rows) element variables. A field of three components becomes NAME_x, NAME_y, NAME_z; any other
+  /// number of components gives NAME_1, NAME_2, … The first step decides the names and components;
+  /// all steps have the same. Throws Error (bad_value) if a name is not usable or given twice, or
+  /// if the time is not after the last one, (environment) if the disk is full.
   void add(double time, std::span<const Field> vertex_fields,
            std::span<const Field> tet_fields = {});
 

@@ -1,5 +1,5 @@
-// Writes a distributed mesh with its values as parallel VTU, for ParaView and VTK: each part writes a
-// file of its own where it is, and no PE gathers anything.
+// Writes a distributed mesh with its values as parallel VTU, for ParaView and VTK: each part writes
+// a file of its own where it is, and no PE gathers anything.
 #pragma once
 
 #include "m2m/workers/scatter.hpp"

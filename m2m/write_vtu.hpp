@@ -1,6 +1,6 @@
-// Writes a mesh with fields as VTU (VTK XML UnstructuredGrid), for ParaView and VTK. All numbers are
-// appended as raw binary, so they are read back bit for bit. The file appears complete or not at
-// all: it is written under another name in the same folder, then renamed.
+// Writes a mesh with fields as VTU (VTK XML UnstructuredGrid), for ParaView and VTK. All numbers
+// are appended as raw binary, so they are read back bit for bit. The file appears complete or not
+// at all: it is written under another name in the same folder, then renamed.
 #pragma once
 
 #include "m2m/field.hpp"
@@ -13,8 +13,8 @@ namespace tess::m2m {
 
 /// `vertex_fields` (n_points rows) become PointData, `tet_fields` (n_tets rows) CellData, with the
 /// components that they have; `time` becomes TimeValue. Blocks and sets are left out, as VTU has
-/// none. Throws Error (bad_value) for fields without a name of their own, (bad_file) with the path if
-/// the file cannot be written.
+/// none. Throws Error (bad_value) for fields without a name of their own, (bad_file) with the path
+/// if the file cannot be written.
 void write_vtu(const std::string& path, const TetMesh& mesh, std::span<const Field> vertex_fields,
                std::span<const Field> tet_fields = {}, double time = 0);
 

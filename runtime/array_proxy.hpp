@@ -1,5 +1,5 @@
-// The proxy of a whole array: a small value that can be stored, sent, and used on every PE. It gives
-// the proxies of elements, broadcasts to all of them, and ends the array. Programs include
+// The proxy of a whole array: a small value that can be stored, sent, and used on every PE. It
+// gives the proxies of elements, broadcasts to all of them, and ends the array. Programs include
 // runtime/array.hpp.
 #pragma once
 
@@ -53,8 +53,8 @@ class ArrayProxy {
   void operator[](const typename detail::FewerAxes<n_axes_of<typename Of::Index>>::type&) const =
       delete;
 
-  /// The element of this index if it is on this PE now, otherwise null. It may leave or be destroyed
-  /// once the current message is done, unless a coroutine of it waits.
+  /// The element of this index if it is on this PE now, otherwise null. It may leave or be
+  /// destroyed once the current message is done, unless a coroutine of it waits.
   template <class Of = C>
   [[nodiscard]] Of* local(const typename Of::Index& index) const {
     return static_cast<Of*>(here().find(index));

@@ -56,9 +56,10 @@ class BalancerProxy {
     return exists() ? group_.local().begin_phase() : nothing();
   }
 
-  /// After a restart: a round by the loads that the checkpoint has of the elements, so that the first
-  /// phase is balanced as those before the checkpoint were. Awaited after start_balancing() while no
-  /// element of the array has work, in place of begin_phase(). Nothing moves if it has none.
+  /// After a restart: a round by the loads that the checkpoint has of the elements, so that the
+  /// first phase is balanced as those before the checkpoint were. Awaited after start_balancing()
+  /// while no element of the array has work, in place of begin_phase(). Nothing moves if it has
+  /// none.
   [[nodiscard]] Task place_again() const {
     return exists() ? group_.local().place_again() : nothing();
   }

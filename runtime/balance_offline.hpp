@@ -1,5 +1,5 @@
-// Strategies without a run: for unit tests of a program's own strategy, and to compare strategies on
-// snapshots that a run saved (lb_lab --save-snapshot, or vt's tools).
+// Strategies without a run: for unit tests of a program's own strategy, and to compare strategies
+// on snapshots that a run saved (lb_lab --save-snapshot, or vt's tools).
 //
 //     balance::Snapshot            elements and PEs, filled by a test, or read from a file
 //     balance::read_lb_datafiles   the phases of saved snapshots

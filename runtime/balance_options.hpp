@@ -20,7 +20,8 @@ struct BalanceOptions {
   std::string strategy = "greedy_refine";
   BalanceWhen when = BalanceWhen::at_sync;
   std::chrono::nanoseconds period{0};  ///< period of periodic rounds, for which it is above 0
-  /// last, moving_average, linear_trend. Distributed strategies (diffusion, gossip) know `last` only.
+  /// last, moving_average, linear_trend. Distributed strategies (diffusion, gossip) know `last`
+  /// only.
   std::string prediction = "last";
   std::uint64_t window = 5;                         ///< number of phases that a prediction uses
   std::uint64_t seed = 1;                           ///< seed of strategies that use random numbers

@@ -96,9 +96,9 @@ class Chare : public detail::TessContributor<IndexType> {
   /// Insert elements while no round is under way, and await an epoch around it, in two cases. If
   /// rounds overlap (a broadcast is started before the result of the last one is known): a new
   /// element that contributes to a round before its first is refused by name. And if elements
-  /// contribute in an entry method that another array or group calls, or the main program: the round
-  /// in whose middle an element is created waits for it (a coroutine of a broadcast that awaits such
-  /// a message is no such case).
+  /// contribute in an entry method that another array or group calls, or the main program: the
+  /// round in whose middle an element is created waits for it (a coroutine of a broadcast that
+  /// awaits such a message is no such case).
   using detail::TessContributor<IndexType>::contribute;
 };
 

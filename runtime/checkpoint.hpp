@@ -18,21 +18,22 @@
 //     }
 //
 // Saved are the elements of all arrays, groups, single chares and sections, wherever they are, and
-// the state object of the main coroutine, with the proxies in it. Elements need a default constructor
-// and serialize(), as for migration. After a restart they are on the homes of their indices.
+// the state object of the main coroutine, with the proxies in it. Elements need a default
+// constructor and serialize(), as for migration. After a restart they are on the homes of their
+// indices.
 //
-// A checkpoint is made at a quiet point: checkpoint() waits until no message is under way, and throws
-// an Error that names what waits if something does: a coroutine of a chare, an unfinished reduction,
-// a message to an element that does not exist, a timer.
+// A checkpoint is made at a quiet point: checkpoint() waits until no message is under way, and
+// throws an Error that names what waits if something does: a coroutine of a chare, an unfinished
+// reduction, a message to an element that does not exist, a timer.
 //
-// CheckpointOptions::buddy_copies: the folder is in the memory of each host (/dev/shm), and a second
-// host has a copy of each file. A restart finds what is left when a host was lost.
+// CheckpointOptions::buddy_copies: the folder is in the memory of each host (/dev/shm), and a
+// second host has a copy of each file. A restart finds what is left when a host was lost.
 //
 // Not saved: futures, timers, balancers. A state with a future does not compile. A callback to a
 // future may be left over in the state or in an element; after a restart a call of it ends the run
-// with an error, so make the future again and send its new callback. Call start_balancing() again; the
-// loads of balanced elements are saved, and BalancerProxy::place_again() uses them.
-// Process groups and read-only data cannot be saved; destroy() them before.
+// with an error, so make the future again and send its new callback. Call start_balancing() again;
+// the loads of balanced elements are saved, and BalancerProxy::place_again() uses them. Process
+// groups and read-only data cannot be saved; destroy() them before.
 #pragma once
 
 #include "runtime/checkpoint/restore.hpp"
@@ -50,10 +51,10 @@
 namespace tess {
 
 /// Saves the run in `folder`, which all processes can reach, unless there are buddy copies. Only in
-/// the main coroutine, outside of epochs. Throws Error if the run is not quiet, if the files cannot be
-/// written, or if the folder has checkpoints of another run, from which this one did not restart; then
-/// the run can go on. Give the options a name first: g++ 12 fails on an aggregate in a `co_await`
-/// expression.
+/// the main coroutine, outside of epochs. Throws Error if the run is not quiet, if the files cannot
+/// be written, or if the folder has checkpoints of another run, from which this one did not
+/// restart; then the run can go on. Give the options a name first: g++ 12 fails on an aggregate in
+/// a `co_await` expression.
 template <class State>
 [[nodiscard]] Task checkpoint(const std::string& folder, const State& state,
                               const CheckpointOptions& options) {
@@ -65,8 +66,8 @@ template <class State>
   return checkpoint(folder, state, CheckpointOptions());
 }
 
-/// The latest finished checkpoint in a folder as this process sees it, as its path; empty if there is
-/// none. A program that does not restart from there gives checkpoint() another folder.
+/// The latest finished checkpoint in a folder as this process sees it, as its path; empty if there
+/// is none. A program that does not restart from there gives checkpoint() another folder.
 [[nodiscard]] inline std::string latest_checkpoint(const std::string& folder) {
   return detail::latest_checkpoint(folder);
 }
@@ -97,10 +98,10 @@ class [[nodiscard]] Restart {
 
 /// Restores the latest good checkpoint of the folder. A damaged one is reported on standard error,
 /// and the one before is used; likewise a damaged file whose buddy copy is used. Called before
-/// anything else in the main coroutine. Throws Error if there is none that this program can restore on
-/// this many PEs. A group that was saved on another number of PEs needs a member function
-/// absorb(Member&&): member p of the checkpoint goes to PE p modulo the number of PEs, where the first
-/// becomes the member and absorbs the others; a PE without one gets a member from the default
+/// anything else in the main coroutine. Throws Error if there is none that this program can restore
+/// on this many PEs. A group that was saved on another number of PEs needs a member function
+/// absorb(Member&&): member p of the checkpoint goes to PE p modulo the number of PEs, where the
+/// first becomes the member and absorbs the others; a PE without one gets a member from the default
 /// constructor.
 template <class State>
 Restart<State> restart(const std::string& folder) {

@@ -103,8 +103,8 @@ class ElementProxy {
 
   [[nodiscard]] ArrayProxy<C> array() const { return ArrayProxy<C>(collection_); }
   [[nodiscard]] const Index& index() const { return index_; }
-  /// The PE to which a message for the element is sent from this PE: this one while the array is not
-  /// known here, since messages wait for it.
+  /// The PE to which a message for the element is sent from this PE: this one while the array is
+  /// not known here, since messages wait for it.
   [[nodiscard]] PeId next_pe() const {
     Pe& pe = current_pe();
     detail::Collection* collection = detail::find_collection(pe, collection_);
@@ -206,8 +206,8 @@ class ElementProxy {
           [[unlikely]]
         meter->sent({collection_, IndexHash<Index>()(index_)}, detail::payload_bytes(arguments));
   }
-  /// Calls the entry method inside the caller's. Returns false, and takes no argument, if it must be
-  /// queued.
+  /// Calls the entry method inside the caller's. Returns false, and takes no argument, if it must
+  /// be queued.
   template <auto F, class... Args>
   [[nodiscard]] bool run_now(Args&&... args) const {
     Pe& pe = current_pe();

@@ -5,8 +5,9 @@
 //     const double t = co_await total;
 //
 // The callback can be sent anywhere; the result arrives at the PE that made the future. It is taken
-// once (a second co_await ends the job), and the future must outlive it: make it a local variable of the coroutine that awaits it, or
-// a member of an element that does not migrate meanwhile. A Future<void> gets no value.
+// once (a second co_await ends the job), and the future must outlive it: make it a local variable
+// of the coroutine that awaits it, or a member of an element that does not migrate meanwhile. A
+// Future<void> gets no value.
 #pragma once
 
 #include "runtime/callback.hpp"

@@ -14,11 +14,12 @@
 //     const auto cells = tess::create<GridCell>(tess::mapped(tess::range(4, 8), ByColumn{8}));
 //
 // A map is a function object whose members can be serialised, or a function: mapped<&by_column>(…).
-// It is called with (index, number of PEs), or (index, range, number of PEs), on every PE and at any
-// time, so it gives the same PE for the same arguments. It replaces the array's usual placement, and
-// `place` of the class, for all indices: also for those outside the range, and for sparse arrays,
-// whose elements send_or_create_home() creates on the home. At creation each PE calls it for the
-// whole range. It goes into checkpoints; on another number of PEs it places the elements anew.
+// It is called with (index, number of PEs), or (index, range, number of PEs), on every PE and at
+// any time, so it gives the same PE for the same arguments. It replaces the array's usual
+// placement, and `place` of the class, for all indices: also for those outside the range, and for
+// sparse arrays, whose elements send_or_create_home() creates on the home. At creation each PE
+// calls it for the whole range. It goes into checkpoints; on another number of PEs it places the
+// elements anew.
 #pragma once
 
 #include "runtime/array.hpp"
@@ -43,8 +44,8 @@ struct InBlocks {
     return detail::home_by_hash(index, n_pes);
   }
 };
-/// Element by element, in row-major order. An index of one axis goes on so outside the range, and in
-/// a sparse array; others are spread by their hashes there.
+/// Element by element, in row-major order. An index of one axis goes on so outside the range, and
+/// in a sparse array; others are spread by their hashes there.
 struct RoundRobin {
   template <class Index>
   PeId operator()(const Index& index, const Range& range, std::int32_t n_pes) const {

@@ -17,9 +17,9 @@
 //
 // The elements are in arrays of their own classes, whose type of index is the same. A proxy of an
 // element becomes one of its interface, which can be stored, sent and used on every PE. A message
-// carries the way from the element's class to the interface, so it needs no search by type; it finds
-// the element wherever that has migrated, and calls the function that its class overrides.
-// An array has an interface as well: InterfaceArray<Shape> broadcasts to all of its elements, and
+// carries the way from the element's class to the interface, so it needs no search by type; it
+// finds the element wherever that has migrated, and calls the function that its class overrides. An
+// array has an interface as well: InterfaceArray<Shape> broadcasts to all of its elements, and
 // array[index] is one of them.
 #pragma once
 

@@ -16,9 +16,10 @@
 //     // …
 //     const double value = caches.read([](const Cache& cache) { return cache.get(3); });
 //
-// The class needs no base and no lock: the group holds one. read() and const entry methods run while
-// others read, on any PE of the process; write() and other entry methods exclude all others. So none of them
-// may wait, and none may call read() or write() of the same group: that ends the job.
+// The class needs no base and no lock: the group holds one. read() and const entry methods run
+// while others read, on any PE of the process; write() and other entry methods exclude all others.
+// So none of them may wait, and none may call read() or write() of the same group: that ends the
+// job.
 //
 // Data that is never written needs no lock. It is sent once to each process:
 //

@@ -99,8 +99,8 @@ bool charge(std::chrono::nanoseconds work);
 /// is the exit code. The code must be in 0 … 255, which is what the system passes on.
 void exit(int code);
 
-/// Writes the parts to standard output in one piece. (mpirun passes on what it reads in pieces of 4 KiB,
-/// so it may mix lines of processes that print much at once.)
+/// Writes the parts to standard output in one piece. (mpirun passes on what it reads in pieces of 4
+/// KiB, so it may mix lines of processes that print much at once.)
 void print_text(const std::string& text);
 /// The same for parts that text() can write. An index is printed as print(index_text(index())).
 template <class... Parts>

@@ -10,8 +10,8 @@
 // destroy() at the end of the scope drops what is still under way to the array. So await the result
 // of the work, or an epoch around it, before.
 //
-// One place owns the array; all others have its handle, which does not keep the array alive. A Scoped
-// is a handle too: it can be given to whatever takes one.
+// One place owns the array; all others have its handle, which does not keep the array alive. A
+// Scoped is a handle too: it can be given to whatever takes one.
 #pragma once
 
 #include "runtime/collections/ending.hpp"

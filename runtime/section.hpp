@@ -49,9 +49,9 @@ class SectionProxy {
     detail::send_to_collection<&Lists::start_arrives>(pe, array_, root(pe), {id_, std::move(call)});
   }
 
-  /// Ends the section: it frees what it holds on every PE; its members stay. What is still under way
-  /// to it is dropped: multicasts and contributions. The current epoch waits until all PEs have freed
-  /// it. Ending a section again has no effect.
+  /// Ends the section: it frees what it holds on every PE; its members stay. What is still under
+  /// way to it is dropped: multicasts and contributions. The current epoch waits until all PEs have
+  /// freed it. Ending a section again has no effect.
   void destroy() const { detail::end_section(array_, id_); }
 
   /// A target for results: entry method F of all members.

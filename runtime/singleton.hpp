@@ -4,8 +4,8 @@
 //     const auto writer = tess::create_one_on<Writer>(tess::PeId{0}, path);
 //     census.send<&Census::add>(3);
 //
-// It is an array of one element, so it may migrate, and its proxy can be sent. Each is known on every
-// PE: for very many tasks use one array, whose elements are inserted or created on demand.
+// It is an array of one element, so it may migrate, and its proxy can be sent. Each is known on
+// every PE: for very many tasks use one array, whose elements are inserted or created on demand.
 #pragma once
 
 #include "runtime/array.hpp"

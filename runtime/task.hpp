@@ -52,8 +52,9 @@ class [[nodiscard]] Task {
     std::exception_ptr error;
 
     promise_type();
-    /// A member function of an element: the coroutine is that element's, also if other code calls it
-    /// as an object. (The class of a lambda is not complete yet, and g++ 12 deduces a reference.)
+    /// A member function of an element: the coroutine is that element's, also if other code calls
+    /// it as an object. (The class of a lambda is not complete yet, and g++ 12 deduces a
+    /// reference.)
     template <class Object, class... Arguments>
       requires std::convertible_to<std::remove_reference_t<Object>*, const detail::TessElement*>
     explicit promise_type(Object& object, Arguments&... /*unused*/) : promise_type() {

@@ -40,9 +40,9 @@ class Timer {
   Timer(PeId pe, std::uint64_t number) : pe_(pe), number_(number) {}
 
   /// Ends the timer. On its own PE it is never called again; from another PE it may be called until
-  /// this request arrives. The epoch of a timer that runs once no longer waits for it. Cancelling it
-  /// again, or a timer that has run, or one of the run before a restart, or a Timer() that names none,
-  /// has no effect.
+  /// this request arrives. The epoch of a timer that runs once no longer waits for it. Cancelling
+  /// it again, or a timer that has run, or one of the run before a restart, or a Timer() that names
+  /// none, has no effect.
   void cancel() const {
     if (number_ != 0) detail::cancel_timer(pe_, number_);
   }
@@ -75,9 +75,10 @@ Timer after(std::chrono::nanoseconds delay, Callback<T> target, std::type_identi
 
 /// Calls `call` after each period, until the timer is cancelled or the run ends. A call that comes
 /// late replaces those that it missed. The timer belongs to no epoch, and nothing waits for its
-/// next call: an epoch ends, and the run ends or reports a deadlock, as if there were no such timer.
-/// What a call sends belongs to the run and to no other epoch: the run does not end before it is
-/// done. (A run in which each call starts work that lasts longer than the period ends by exit().)
+/// next call: an epoch ends, and the run ends or reports a deadlock, as if there were no such
+/// timer. What a call sends belongs to the run and to no other epoch: the run does not end before
+/// it is done. (A run in which each call starts work that lasts longer than the period ends by
+/// exit().)
 template <class F>
   requires std::invocable<F&>
 Timer every(std::chrono::nanoseconds period, F call) {

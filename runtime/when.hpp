@@ -9,9 +9,9 @@
 //     const auto first = co_await tess::when_any(wells[{5}].ask<&Well::depth>(), tess::sleep(50ms));
 //     if (first.index() == 0) found.in_time = std::get<0>(first);
 //
-// What is given as a variable stays usable: a future that comes second in when_any keeps its result.
-// An ask that is made in the call is cancelled, a mailbox keeps its message, and an epoch goes on (its
-// body does not run if another result is there already).
+// What is given as a variable stays usable: a future that comes second in when_any keeps its
+// result. An ask that is made in the call is cancelled, a mailbox keeps its message, and an epoch
+// goes on (its body does not run if another result is there already).
 #pragma once
 
 #include "runtime/callback.hpp"
@@ -311,8 +311,8 @@ template <class A>
   static_assert(detail::check_joined<A>());
   return detail::WhenAll<detail::PartsOfVector<A>>(detail::PartsOfVector<A>(std::move(a)));
 }
-/// When awaited, gives the first result, as a variant whose index() says which one it is. If several
-/// are there, it is the first in the order of the arguments.
+/// When awaited, gives the first result, as a variant whose index() says which one it is. If
+/// several are there, it is the first in the order of the arguments.
 template <class... A>
 [[nodiscard]] auto when_any(A&&... a) {
   static_assert(detail::check_joined<A...>());

@@ -1,8 +1,8 @@
 // A leaf of the oct-tree: a chare that exists while the field is as steep as its cells are fine.
 //
-// A step is three sweeps. In each a leaf sends layers of cells to the leaves behind two faces, awaits
-// theirs, and moves the mass; a leaf beside finer ones awaits their flows as well. Two entry methods,
-// each in an epoch of its own, change the tree:
+// A step is three sweeps. In each a leaf sends layers of cells to the leaves behind two faces,
+// awaits theirs, and moves the mass; a leaf beside finer ones awaits their flows as well. Two entry
+// methods, each in an epoch of its own, change the tree:
 //
 //     plan    every leaf chooses a level by its own cells, and tells its neighbours; if it hears of a
 //             level that raises its choice (neighbourhood.hpp) it tells them again. The end is the

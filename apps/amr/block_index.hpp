@@ -1,5 +1,5 @@
-// Blocks of an oct-tree over the periodic unit cube, named by their path from the root: a bit vector
-// of a leading one and three bits per level, the halves of x, y and z that the block is in.
+// Blocks of an oct-tree over the periodic unit cube, named by their path from the root: a bit
+// vector of a leading one and three bits per level, the halves of x, y and z that the block is in.
 //
 //     1        the root          1 ooo        one of its eight children
 //     1 ooo ppp   child ppp of that child, at level 2, and so on to level 20
@@ -19,8 +19,8 @@ inline constexpr std::int32_t n_faces = 6, n_octants = 8, n_quadrants = 4;
 [[nodiscard]] constexpr std::int32_t half(std::int32_t octant, std::int32_t axis) {
   return (octant >> axis) & 1;
 }
-/// The quarter of a face across `axis` that the child touches: bit 0 is its half along the next axis,
-/// bit 1 along the one after that.
+/// The quarter of a face across `axis` that the child touches: bit 0 is its half along the next
+/// axis, bit 1 along the one after that.
 [[nodiscard]] constexpr std::int32_t quadrant_of(std::int32_t octant, std::int32_t axis) {
   return half(octant, (axis + 1) % 3) | half(octant, (axis + 2) % 3) << 1;
 }

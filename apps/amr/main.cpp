@@ -32,7 +32,8 @@ std::vector<Settings> runs_of(const Options& options) {
         one.problem.order = order;
         one.problem.most_level = level;
         if (uniform) one.problem.least_level = level;
-        // Differences within a block fall with the spacing, and the scheme's errors with its square.
+        // Differences within a block fall with the spacing, and the scheme's errors with its
+        // square.
         for (std::int32_t k = given.least_level + 1; k < level; ++k) one.problem.refine /= 4;
         one.problem.n_steps = 0;  // by the time and this level
         one.problem.complete();

@@ -1,11 +1,11 @@
 // What a leaf knows of the leaves behind its faces, and the level that it chooses beside them: the
 // rules by which the tree changes, without messages.
 //
-// For each face it knows whether the leaves behind it are coarser (-1), of its level (0) or finer (1).
-// A leaf first chooses a level by its own cells. Then it hears of the choices of its neighbours: it
-// raises its own until no neighbour is two above it, and it does not merge with siblings of which one
-// does not merge. Choices only rise, so they end at the same levels in any order: the coarsest 2:1
-// balanced tree that is fine enough.
+// For each face it knows whether the leaves behind it are coarser (-1), of its level (0) or finer
+// (1). A leaf first chooses a level by its own cells. Then it hears of the choices of its
+// neighbours: it raises its own until no neighbour is two above it, and it does not merge with
+// siblings of which one does not merge. Choices only rise, so they end at the same levels in any
+// order: the coarsest 2:1 balanced tree that is fine enough.
 #pragma once
 
 #include "apps/amr/block_index.hpp"
@@ -52,8 +52,8 @@ class Neighbourhood {
   /// True if the choice rose.
   [[nodiscard]] bool hear(const Choice& of_neighbour);
 
-  /// What will be behind the faces after the change: of this leaf, if it stays, otherwise of the parent
-  /// or the child that has its part `octant`. Faces within the parent or this leaf are 0.
+  /// What will be behind the faces after the change: of this leaf, if it stays, otherwise of the
+  /// parent or the child that has its part `octant`. Faces within the parent or this leaf are 0.
   [[nodiscard]] Sides next_sides() const;
   [[nodiscard]] Sides next_sides(std::int32_t octant) const;
   /// The leaf stays, with these sides.

@@ -1,11 +1,12 @@
 // The cells of a block: the numerics of amr, without messages.
 //
 // A cell holds its mass as a whole number of quanta, 2^-60 of the mass of u = 1 over the cube. What
-// flows through a face is a whole number of quanta as well: what one cell loses the other gains, the
-// flow through a face of a coarse cell is the sum of those through the fine faces, children share the
-// mass of their parent. So the total mass is exact in any order of summation.
+// flows through a face is a whole number of quanta as well: what one cell loses the other gains,
+// the flow through a face of a coarse cell is the sum of those through the fine faces, children
+// share the mass of their parent. So the total mass is exact in any order of summation.
 //
-// A step is a sweep along each axis (Godunov splitting; the operators commute where cells are equal):
+// A step is a sweep along each axis (Godunov splitting; the operators commute where cells are
+// equal):
 //
 //     flow = v dt A (u + (1 - c) s / 2),  s = w (u_right - u) + (1 - w) (u - u_left),  c = v dt / h
 //

@@ -1,6 +1,6 @@
 // The advected field: u(x, t) = u0(x - v t) in the periodic unit cube, where u0 is a Gaussian of
-// height 1. It is a product of functions of one coordinate, so that the mean over a cell is a product
-// of differences of error functions, and values are compared with exact means of cells.
+// height 1. It is a product of functions of one coordinate, so that the mean over a cell is a
+// product of differences of error functions, and values are compared with exact means of cells.
 #pragma once
 
 #include <array>
@@ -29,7 +29,8 @@ struct Problem {
   [[nodiscard]] double spacing(std::int32_t level) const { return 1.0 / (n_cells << level); }
   /// Chooses the steps by `cfl` and `end`. Throws tess::Error for what cannot be computed.
   void complete();
-  /// The mean of u over the interval [low, low + h] of one axis, as a factor of the mean over a cell.
+  /// The mean of u over the interval [low, low + h] of one axis, as a factor of the mean over a
+  /// cell.
   [[nodiscard]] double mean(std::int32_t axis, double low, double h, double time) const;
 };
 

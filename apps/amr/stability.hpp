@@ -1,5 +1,5 @@
-// Cases at the edge of what amr computes. Each compares with what must hold there: an exact shift, a
-// translated or mirrored run, a uniform tree, bounds; and in each the mass stays the same.
+// Cases at the edge of what amr computes. Each compares with what must hold there: an exact shift,
+// a translated or mirrored run, a uniform tree, bounds; and in each the mass stays the same.
 #pragma once
 
 #include "apps/amr/problem.hpp"

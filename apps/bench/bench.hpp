@@ -18,7 +18,8 @@
 
 namespace bench {
 
-/// Works in an entry method: keeps the core busy for this time, or takes it on the simulated machine.
+/// Works in an entry method: keeps the core busy for this time, or takes it on the simulated
+/// machine.
 void work(std::chrono::nanoseconds time);
 
 /// The longest that one sample is meant to last.

@@ -1,13 +1,14 @@
-// The pairs of boxes and triangles in one thread, without the runtime, beside other libraries on the
-// same scenes in the same run: CSV on standard output. Methods run in turns, and a row is printed
-// after the sets of pairs were compared. Times are processor times of the process, which stays on
-// one core: on an idle machine they equal wall-clock times, and other programs disturb them only
-// through the caches. Some cases are run on chares, too; times on two PEs are elapsed times.
+// The pairs of boxes and triangles in one thread, without the runtime, beside other libraries on
+// the same scenes in the same run: CSV on standard output. Methods run in turns, and a row is
+// printed after the sets of pairs were compared. Times are processor times of the process, which
+// stays on one core: on an idle machine they equal wall-clock times, and other programs disturb
+// them only through the caches. Some cases are run on chares, too; times on two PEs are elapsed
+// times.
 //
 //     bench_collide;  bench_collide planes wave_self_embree;  bench_collide --growth;  bench_collide --list
 //
-// The limit of our rows is the fastest other library of this run, if one has a row; of a collider on one PE the serial
-// face, and on two PEs half the time of one.
+// The limit of our rows is the fastest other library of this run, if one has a row; of a collider
+// on one PE the serial face, and on two PEs half the time of one.
 #include "apps/bench/collide/box_rows.hpp"
 #include "apps/bench/collide/case.hpp"
 #include "apps/bench/collide/chare_rows.hpp"

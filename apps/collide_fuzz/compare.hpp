@@ -13,7 +13,8 @@ namespace collide_fuzz {
 
 using PairList = std::vector<tess::collide::Pair>;
 
-/// Notes in the outcome whether `found` is `expected`, in any order; only the first failure is kept.
+/// Notes in the outcome whether `found` is `expected`, in any order; only the first failure is
+/// kept.
 inline void compare(PairList found, PairList expected, std::string_view what, Outcome& outcome) {
   std::ranges::sort(found);
   std::ranges::sort(expected);

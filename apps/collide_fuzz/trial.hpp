@@ -1,4 +1,5 @@
-// The trials of a seed: its scene is searched, and the pairs are compared with those of brute force.
+// The trials of a seed: its scene is searched, and the pairs are compared with those of brute
+// force.
 #pragma once
 
 #include "apps/collide_fuzz/look.hpp"
@@ -20,8 +21,8 @@ struct Outcome {
 /// different kinds; within a radius, nearest, and along a ray.
 [[nodiscard]] Outcome try_serial(const Look& look);
 
-/// The chares on a simulated machine with random message order and migration: two collisions, between
-/// which the objects move.
+/// The chares on a simulated machine with random message order and migration: two collisions,
+/// between which the objects move.
 [[nodiscard]] Outcome try_chares(const Look& look, std::int32_t n_pes);
 
 }  // namespace collide_fuzz

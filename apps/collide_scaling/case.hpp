@@ -18,8 +18,8 @@ struct Case {
   std::int32_t n_pes = 1;
   std::int32_t steps = 4;  ///< the first makes the voxels, and does not count
   double voxel_size = 0;   ///< 0: chosen
-  /// Of so many triangles one is there, a square number: the voxels and their messages are the same,
-  /// with fewer objects, and a pair costs so many times as much.
+  /// Of so many triangles one is there, a square number: the voxels and their messages are the
+  /// same, with fewer objects, and a pair costs so many times as much.
   std::int32_t thinned = 1;
   std::string balance = "none";
   std::int32_t period = 5;  ///< steps between two rounds of the balancer

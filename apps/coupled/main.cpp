@@ -25,8 +25,8 @@ struct Options {
 };
 
 /// The balancers of both meshes. Each counts the load of the other mesh as fixed, so their rounds
-/// take turns: after the one of a mesh, a new phase of the other begins. Otherwise both would correct
-/// the same imbalance.
+/// take turns: after the one of a mesh, a new phase of the other begins. Otherwise both would
+/// correct the same imbalance.
 class Balancers {
  public:
   void add(const tess::BalancerProxy& balancer) { all_.push_back(balancer); }

@@ -1,5 +1,6 @@
-// A substance that burns: its rate by Arrhenius's law, A exp(-E/u), where u is above a threshold. It is
-// stiff, so a step has many implicit substeps, and it costs time only where the field is warm.
+// A substance that burns: its rate by Arrhenius's law, A exp(-E/u), where u is above a threshold.
+// It is stiff, so a step has many implicit substeps, and it costs time only where the field is
+// warm.
 #pragma once
 
 #include <cstdint>

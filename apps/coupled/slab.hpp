@@ -1,10 +1,10 @@
-// A piece of a mesh with a field that diffuses: a slab of planes x = const of a box of n³ cubes, each
-// cut into six tetrahedra. The box may move; its field is then solved in the moving frame,
+// A piece of a mesh with a field that diffuses: a slab of planes x = const of a box of n³ cubes,
+// each cut into six tetrahedra. The box may move; its field is then solved in the moving frame,
 //
 //     du/dt = κ Δu + v·∇u - R(u) + R(exact),   v the velocity of the box,
 //
-// with central differences and explicit Euler steps; the reaction R (reaction.hpp) is 0 unless asked
-// for.
+// with central differences and explicit Euler steps; the reaction R (reaction.hpp) is 0 unless
+// asked for.
 #pragma once
 
 #include "apps/coupled/reaction.hpp"

@@ -67,8 +67,8 @@ void add_options(apps::CommandLine& line, Settings& s) {
   line.flag("--explain", s.explain, "print what this run uses and what it leaves out");
 }
 
-/// A replay reads snapshots and runs nothing, so it has no use for the options of runs, nor a run for
-/// those of replays.
+/// A replay reads snapshots and runs nothing, so it has no use for the options of runs, nor a run
+/// for those of replays.
 void require_one_purpose(const apps::CommandLine& line, bool replays) {
   if (!replays) {
     for (const char* const name : {"--pes-of-replay", "--fold"})

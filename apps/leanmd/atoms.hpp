@@ -2,8 +2,8 @@
 //
 //     advance (kick, drift) -> [take_out, add] -> positions … their forces -> finish (kick)
 //
-// Atoms that cannot continue (too close or too fast) stay where they are from then on, and the totals
-// say why.
+// Atoms that cannot continue (too close or too fast) stay where they are from then on, and the
+// totals say why.
 #pragma once
 
 #include "apps/leanmd/motion.hpp"
@@ -36,7 +36,8 @@ class Atoms {
   void add(const std::vector<Atom>& atoms);
   /// The first half of a step.
   void advance(std::int32_t step);
-  /// Takes out all atoms, and sorts them by the cells where they are: `own`, and those that touch it.
+  /// Takes out all atoms, and sorts them by the cells where they are: `own`, and those that touch
+  /// it.
   [[nodiscard]] std::map<tess::Index3, std::vector<Atom>> take_out(const tess::Index3& own);
   [[nodiscard]] std::vector<Position> positions() const;
   /// The second half, with the forces at these positions. Returns the energies of the step.

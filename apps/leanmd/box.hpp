@@ -1,6 +1,6 @@
-// The periodic box: a cube, cut into cells. A coordinate counts the edge of the box in units of 2^-64.
-// So it wraps round by itself where an atom leaves the box, and the difference of two coordinates,
-// read as a signed number, leads to the nearest image. Both are exact.
+// The periodic box: a cube, cut into cells. A coordinate counts the edge of the box in units of
+// 2^-64. So it wraps round by itself where an atom leaves the box, and the difference of two
+// coordinates, read as a signed number, leads to the nearest image. Both are exact.
 #pragma once
 
 #include "runtime/core/index.hpp"
@@ -27,8 +27,8 @@ struct Box {
     return {slice(at, 0), slice(at, 1), slice(at, 2)};
   }
 
-  /// The cells with a point within `distance` of a point of this cell: itself and its neighbours, each
-  /// once, however few there are around the box.
+  /// The cells with a point within `distance` of a point of this cell: itself and its neighbours,
+  /// each once, however few there are around the box.
   [[nodiscard]] std::vector<tess::Index3> cells_within(double distance, tess::Index3 cell) const {
     const auto reach = [&](std::size_t axis) {
       return static_cast<std::int32_t>(std::ceil(distance / edge * n_cells[axis]));

@@ -3,8 +3,8 @@
 //     kick, drift -> [exchange atoms with the cells around] -> multicast the coordinates to the
 //     computes of this cell -> await the sum of their forces -> kick -> the next step
 //
-// There is no barrier: cells may be a step apart. A cell that cannot continue (atoms too close or too
-// fast) keeps its atoms where they are until the end of the run, which reports it.
+// There is no barrier: cells may be a step apart. A cell that cannot continue (atoms too close or
+// too fast) keeps its atoms where they are until the end of the run, which reports it.
 #pragma once
 
 #include "apps/leanmd/atoms.hpp"

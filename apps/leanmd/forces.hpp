@@ -4,12 +4,12 @@
 //
 //     U(r) = 4 (r^-12 - r^-6) + c r² + e
 //
-// The force of each pair is rounded to a quantum, and opposite for its two atoms. Sums of quanta are
-// exact, so a force does not depend on the order of summation: not on cells, PEs, or schedules.
+// The force of each pair is rounded to a quantum, and opposite for its two atoms. Sums of quanta
+// are exact, so a force does not depend on the order of summation: not on cells, PEs, or schedules.
 //
-// No sum overflows. A pair closer than least_distance, where the force reaches 2^20, is an error and
-// adds nothing. All others are that far apart, so at most 2^8 of them repel an atom: 2^60 quanta. The
-// attraction is below 2.4 per pair.
+// No sum overflows. A pair closer than least_distance, where the force reaches 2^20, is an error
+// and adds nothing. All others are that far apart, so at most 2^8 of them repel an atom: 2^60
+// quanta. The attraction is below 2.4 per pair.
 #pragma once
 
 #include "apps/leanmd/box.hpp"

@@ -1,8 +1,8 @@
 // The motion of atoms by velocity Verlet in whole numbers (Levesque and Verlet 1993). A velocity
 // counts units of force_quantum dt/2, so that half a kick is the addition of the force; a drift is
-// rounded to the unit of positions. Hence two properties that every run can be checked by: the total
-// momentum stays what it was, to the last bit; and a run that is turned round, by reversing all
-// velocities, returns to its start.
+// rounded to the unit of positions. Hence two properties that every run can be checked by: the
+// total momentum stays what it was, to the last bit; and a run that is turned round, by reversing
+// all velocities, returns to its start.
 #pragma once
 
 #include "apps/leanmd/forces.hpp"
@@ -46,8 +46,8 @@ class Motion {
 };
 
 /// An initial state: `n` of the points of a cubic lattice, drawn at random, and velocities of a
-/// temperature whose sum is 0. With a gradient (0 ... 1) the points at small x are chosen more often,
-/// in proportion to 1 + gradient (1 - 2 x/edge). The same for equal arguments.
+/// temperature whose sum is 0. With a gradient (0 ... 1) the points at small x are chosen more
+/// often, in proportion to 1 + gradient (1 - 2 x/edge). The same for equal arguments.
 struct InitialState {
   std::int32_t n_atoms = 0;
   double edge = 1, gradient = 0, temperature = 1;

@@ -15,7 +15,8 @@ struct Options {
   std::optional<tess::BalanceOptions> balance;
   /// Compares all forces of the first step and of the last with those of all pairs.
   bool check = false;
-  /// Afterwards reverses all velocities and runs back: the atoms return to their start, bit for bit.
+  /// Afterwards reverses all velocities and runs back: the atoms return to their start, bit for
+  /// bit.
   bool reverse = false;
   apps::Progress* progress = nullptr;
   apps::Checkpoints checkpoints;

@@ -1,6 +1,6 @@
-// The stability report: stiff and extreme simulations. Those that can run must agree with all pairs,
-// keep their energy, and return to their start when the velocities are reversed; the others must be
-// refused with the right reason.
+// The stability report: stiff and extreme simulations. Those that can run must agree with all
+// pairs, keep their energy, and return to their start when the velocities are reversed; the others
+// must be refused with the right reason.
 #pragma once
 
 #include "apps/leanmd/simulation.hpp"

@@ -8,10 +8,12 @@ namespace m2m_transfer {
 /// What a run does: exactly one of these.
 enum class Mode : std::uint8_t { transfer, files, study, round_trips, stability };
 
-/// Throws Error (bad_argument) with the first option that the mode does not use, with the value given.
+/// Throws Error (bad_argument) with the first option that the mode does not use, with the value
+/// given.
 void refuse_contradictions(const DriverOptions& options, Mode mode);
 
-/// Throws Error (bad_argument) with the first output whose path is that of an input or of another output.
+/// Throws Error (bad_argument) with the first output whose path is that of an input or of another
+/// output.
 void refuse_equal_paths(const DriverOptions& options);
 
 }  // namespace m2m_transfer

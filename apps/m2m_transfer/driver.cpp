@@ -55,7 +55,8 @@ bool wants_all_kinds(const DriverOptions& options) {
   return options.request.kind == "all";
 }
 
-/// The kinds of a table of kinds. Options that only some of them know are refused before the first runs.
+/// The kinds of a table of kinds. Options that only some of them know are refused before the first
+/// runs.
 std::vector<TransferKind> kinds_of(const DriverOptions& options) {
   if (options.kind_is_given && !wants_all_kinds(options))
     return {parse_transfer_kind(options.request.kind)};

@@ -1,5 +1,6 @@
 // Runs one graph of transfers, a study, or a drift table, as the command line asks for. All PEs
-// read the input together, PE 0 writes the output. Errors of the input are found before a mesh is cut.
+// read the input together, PE 0 writes the output. Errors of the input are found before a mesh is
+// cut.
 #pragma once
 
 #include "apps/m2m_transfer/input/problem.hpp"

@@ -1,6 +1,7 @@
-// Moves the fields of the source file, step by step, and reads or writes the weights of the transfer.
-// There is no truth to compare with: the report says what was found, and the hash of each step. Only
-// PE 0 reads and writes files. It holds a batch of steps at a time; each batch is one application.
+// Moves the fields of the source file, step by step, and reads or writes the weights of the
+// transfer. There is no truth to compare with: the report says what was found, and the hash of each
+// step. Only PE 0 reads and writes files. It holds a batch of steps at a time; each batch is one
+// application.
 #pragma once
 
 #include "apps/m2m_transfer/names.hpp"
@@ -54,8 +55,8 @@ struct FileFieldsReport {
 };
 
 /// True if the request needs this and not a comparison with formulas: it names a step, a file of
-/// weights, or a field that the source file has, or neither a formula nor a field of a file that has
-/// fields.
+/// weights, or a field that the source file has, or neither a formula nor a field of a file that
+/// has fields.
 [[nodiscard]] bool is_for_files(const FileFieldsRequest& request);
 
 /// Throws Error with the option, file, field or step that is wrong, before any message is sent.

@@ -21,9 +21,10 @@ struct Footprint {
   std::uint64_t bytes_sent = 0;                  ///< between processes since the start, by all PEs
 };
 
-/// Wall-clock seconds of the phases. `read`: reading and checking; `setup`: partition and distribution; `broad`
-/// and `narrow`: the search; `again`: the fastest search after a motion, 0 without one; `apply`:
-/// one application of the donors found; `gather`: the values of the target, collected on PE 0.
+/// Wall-clock seconds of the phases. `read`: reading and checking; `setup`: partition and
+/// distribution; `broad` and `narrow`: the search; `again`: the fastest search after a motion, 0
+/// without one; `apply`: one application of the donors found; `gather`: the values of the target,
+/// collected on PE 0.
 struct PhaseSeconds {
   double read = 0, setup = 0, broad = 0, narrow = 0, again = 0, apply = 0, gather = 0;
   [[nodiscard]] double transfer() const { return broad + narrow + apply; }

@@ -25,8 +25,8 @@ namespace m2m_transfer {
   return path.ends_with(".pvtu");
 }
 
-/// The path of a result, or empty. Throws Error (bad_argument) if its ending names no format that is
-/// written.
+/// The path of a result, or empty. Throws Error (bad_argument) if its ending names no format that
+/// is written.
 inline void require_result_format(const std::string& path) {
   constexpr std::array<std::string_view, 9> endings{".vtu", ".pvtu", ".exo", ".e",   ".ex2",
                                                     ".g",   ".exii", ".gen", ".ncdf"};

@@ -5,8 +5,8 @@
 //     row 1   x x x .      left    0100   … and the diagonals to both sides
 //     row 2                right   0001
 //
-// A board is named by its path, the columns of its queens from the first row on, `column_bits` each,
-// from the highest bit down: smaller paths stand further left in the tree of all boards.
+// A board is named by its path, the columns of its queens from the first row on, `column_bits`
+// each, from the highest bit down: smaller paths stand further left in the tree of all boards.
 #pragma once
 
 #include <array>

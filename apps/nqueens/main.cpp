@@ -1,5 +1,5 @@
-// nqueens: how many ways are there to put n queens on a board of n × n squares such that none attacks
-// another? A tree search in messages with priorities, checked against the known counts.
+// nqueens: how many ways are there to put n queens on a board of n × n squares such that none
+// attacks another? A tree search in messages with priorities, checked against the known counts.
 #include "apps/command_line.hpp"
 #include "apps/nqueens/parts.hpp"
 #include "apps/nqueens/report.hpp"

@@ -1,7 +1,7 @@
-// The search in parts, for checkpoints: the search below a board has no quiet moment, so a checkpoint
-// is made between two searches. The parts are the boards with queens in the first three rows, from
-// left to right; the search below some of them is one epoch. A checkpoint holds no chare, only how
-// many parts are done and what they gave.
+// The search in parts, for checkpoints: the search below a board has no quiet moment, so a
+// checkpoint is made between two searches. The parts are the boards with queens in the first three
+// rows, from left to right; the search below some of them is one epoch. A checkpoint holds no
+// chare, only how many parts are done and what they gave.
 #pragma once
 
 #include "apps/checkpoints.hpp"

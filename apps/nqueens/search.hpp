@@ -1,14 +1,14 @@
-// The search as messages. A task is a board: with more than `grain` rows left its entry method sends
-// one task per queen of the next row, otherwise it searches all below it serially. Nothing waits:
-// the end of the epoch is the end of the search, and then the counts are added.
+// The search as messages. A task is a board: with more than `grain` rows left its entry method
+// sends one task per queen of the next row, otherwise it searches all below it serially. Nothing
+// waits: the end of the epoch is the end of the search, and then the counts are added.
 //
 //     form group    tasks are messages to the members of a group; a hash of the board chooses the PE
 //     form chares   each task is a chare of a sparse array, created on demand at the home of its
 //                   index, and destroyed when it has run
 //
-// What is looked for is the number of solutions, or the first solution, of the smallest path. Then a
-// member that finds one sends it to all others before all other messages, and tasks to its right are
-// dropped where they arrive.
+// What is looked for is the number of solutions, or the first solution, of the smallest path. Then
+// a member that finds one sends it to all others before all other messages, and tasks to its right
+// are dropped where they arrive.
 #pragma once
 
 #include "apps/nqueens/board.hpp"
@@ -43,8 +43,8 @@ struct Outcome {
   void add(const Outcome& part);
 };
 
-/// Searches all below these boards on all PEs, by default below the empty one, and adds what it finds
-/// to `outcome`. Called on one PE, in the main coroutine.
+/// Searches all below these boards on all PEs, by default below the empty one, and adds what it
+/// finds to `outcome`. Called on one PE, in the main coroutine.
 tess::Task search(Problem problem, Outcome& outcome, std::vector<Board> boards);
 tess::Task search(Problem problem, Outcome& outcome);
 

@@ -1,5 +1,5 @@
-// One overset assembly: a background mesh, and a mesh around a body that overlaps it. The wall of the
-// body cuts a hole into the background; the fringe of each mesh takes values of the other.
+// One overset assembly: a background mesh, and a mesh around a body that overlaps it. The wall of
+// the body cuts a hole into the background; the fringe of each mesh takes values of the other.
 #pragma once
 
 #include "m2m/field.hpp"

@@ -23,7 +23,8 @@ constexpr std::array<std::pair<std::string_view, Body::Shape>, 4> shapes{
      {"star", Body::Shape::star},
      {"torus", Body::Shape::torus}}};
 
-/// The points of a shape before it is scaled, turned and moved: innermost and outermost place of each.
+/// The points of a shape before it is scaled, turned and moved: innermost and outermost place of
+/// each.
 struct Skeleton {
   std::vector<std::pair<Point, Point>> points;
   std::vector<Triangle> triangles;  // normals outwards

@@ -1,5 +1,5 @@
-// Generated overset meshes: a body of some shape, and around it layers of tetrahedra out to a surface
-// of the same shape.
+// Generated overset meshes: a body of some shape, and around it layers of tetrahedra out to a
+// surface of the same shape.
 //
 //     ball:12    box:12    star:12    torus:12        the number sets the triangles of the surface
 #pragma once
@@ -34,8 +34,8 @@ struct Body {
 /// Throws Error (bad_argument) for a number that is not from 2 to 200.
 [[nodiscard]] Body parse_body(std::string_view name);
 
-/// Inside out: point v of layer k has the number k × (points of the surface) + v. All tetrahedra have
-/// positive orientation where the shape is not too coarse.
+/// Inside out: point v of layer k has the number k × (points of the surface) + v. All tetrahedra
+/// have positive orientation where the shape is not too coarse.
 [[nodiscard]] tess::m2m::TetMesh mesh_around(const Body& body);
 
 /// The triangles of layer 0, their normals out of the body.

@@ -1,5 +1,5 @@
-// A piece of one of the two meshes, as a chare of the program: it holds its part of the mesh and the
-// values, and the library sees spans. What the library does for it is Piece and Blanking.
+// A piece of one of the two meshes, as a chare of the program: it holds its part of the mesh and
+// the values, and the library sees spans. What the library does for it is Piece and Blanking.
 #pragma once
 
 #include "m2m/coupling.hpp"

@@ -1,5 +1,5 @@
-// A mesh around a body overlaps a background mesh: cuts the hole, finds the donors of the fringes, and
-// moves a field between the two.
+// A mesh around a body overlaps a background mesh: cuts the hole, finds the donors of the fringes,
+// and moves a field between the two.
 #include "apps/command_line.hpp"
 #include "apps/overset/body.hpp"
 #include "apps/overset/report.hpp"
@@ -43,7 +43,8 @@ tess::Task run_once(Options options) {
   if (!options.plot.empty()) tess::print(write(problem, assembly, options.plot));
 }
 
-/// Both meshes refined together: the background of n cubes, the mesh around the body of n / 2 edges.
+/// Both meshes refined together: the background of n cubes, the mesh around the body of n / 2
+/// edges.
 tess::Task run_refined(Options options) {
   std::vector<StudyRow> rows;
   for (const std::int32_t n : options.refinements) {

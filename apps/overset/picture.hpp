@@ -9,8 +9,8 @@ namespace overset {
 
 enum class Moment { before, after };
 
-/// SVG. Each tetrahedron that the plane through the middle of the wall meets is a polygon. Before: all
-/// of both meshes. After: those without a hole; fringe tetrahedra are shaded, orphans are red.
+/// SVG. Each tetrahedron that the plane through the middle of the wall meets is a polygon. Before:
+/// all of both meshes. After: those without a hole; fringe tetrahedra are shaded, orphans are red.
 [[nodiscard]] std::string picture(const Problem& problem, const Assembly& assembly, Moment moment);
 
 }  // namespace overset

@@ -17,8 +17,8 @@ namespace overset {
 /// The method in sentences, with the numbers of this run.
 [[nodiscard]] std::string explanation(const Problem& problem);
 
-/// Writes background.exo and overset.exo with the nodal variables iblank, quality and the field, and
-/// before.svg and after.svg, into the folder. Returns a line that lists them.
+/// Writes background.exo and overset.exo with the nodal variables iblank, quality and the field,
+/// and before.svg and after.svg, into the folder. Returns a line that lists them.
 [[nodiscard]] std::string write(const Problem& problem, const Assembly& assembly,
                                 const std::string& folder);
 

@@ -52,8 +52,8 @@ std::string_view with(Style style) {
 constexpr std::array colours{"#0072b2", "#d55e00", "#009e73", "#cc79a7",
                              "#e69f00", "#56b4e9", "#000000", "#999999"};
 
-/// The axis ends with the data, not at a round number without a label. On a logarithmic axis gnuplot's
-/// ends are rounded, and may be inside the outermost labels, which it then omits.
+/// The axis ends with the data, not at a round number without a label. On a logarithmic axis
+/// gnuplot's ends are rounded, and may be inside the outermost labels, which it then omits.
 std::string x_range(const Chart& chart) {
   double low = std::numeric_limits<double>::infinity(), high = 0;
   for (const Series& series : chart.series) {

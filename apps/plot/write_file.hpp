@@ -17,7 +17,8 @@ void require_writable(const std::string& option, const std::string& path);
 /// The same for a picture, NAME.svg.
 void require_picture(const std::string& option, const std::string& path);
 
-/// True if two paths lead to one file, or will once it is written. No path is the same as an empty one.
+/// True if two paths lead to one file, or will once it is written. No path is the same as an empty
+/// one.
 [[nodiscard]] bool is_same_file(const std::filesystem::path& a, const std::filesystem::path& b);
 
 /// Throws tess::Error (environment) that names the path and why it cannot be written.

@@ -1,14 +1,14 @@
-// All means of control in one program, at the same time: replies with errors, deadlines, when_all and
-// when_any, sections that are made, used and destroyed while their members migrate, are created and
-// end, priorities and expedited messages, delayed sends and periodic timers, nested epochs, mailboxes,
-// elements created on demand, a single chare, a group, a process group, read-only data, reductions,
-// scans, a user-defined map, elements of two arrays behind one interface, and between the phases
-// checkpoints, with a restart on another number of PEs.
+// All means of control in one program, at the same time: replies with errors, deadlines, when_all
+// and when_any, sections that are made, used and destroyed while their members migrate, are created
+// and end, priorities and expedited messages, delayed sends and periodic timers, nested epochs,
+// mailboxes, elements created on demand, a single chare, a group, a process group, read-only data,
+// reductions, scans, a user-defined map, elements of two arrays behind one interface, and between
+// the phases checkpoints, with a restart on another number of PEs.
 //
-// The oracle: each message that must arrive carries a token, and each element adds up the tokens that
-// reached it. After each phase the sums over all collections equal the sum of what was sent. Replies
-// are what the function would return. A result of a section has one contribution of each member that
-// has not ended, and all of them to the same multicast.
+// The oracle: each message that must arrive carries a token, and each element adds up the tokens
+// that reached it. After each phase the sums over all collections equal the sum of what was sent.
+// Replies are what the function would return. A result of a section has one contribution of each
+// member that has not ended, and all of them to the same multicast.
 #include "apps/protocol_fuzz/citizen.hpp"
 #include "apps/protocol_fuzz/city_life.hpp"
 #include "apps/protocol_fuzz/scenarios.hpp"

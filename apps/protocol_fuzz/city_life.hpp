@@ -145,8 +145,8 @@ class Singer : public Chare<Singer, Index1>, public Resident {
     if (!std::exchange(ends_, true)) --city->n_singers;
     destroy();
   }
-  /// Contributes at once, or after it has asked another one. All members give their nth contribution
-  /// to the target of the nth multicast.
+  /// Contributes at once, or after it has asked another one. All members give their nth
+  /// contribution to the target of the nth multicast.
   Task sing(Cue cue) {
     results_[cue.section].push_back(cue.result);
     Random random(mix(city->seed ^ static_cast<std::uint64_t>(index().x * 1000 + n_sung_++)));

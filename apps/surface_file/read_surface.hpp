@@ -2,10 +2,10 @@
 // Every face of a file becomes its triangles (polygons become fans), degenerate and duplicate ones
 // included, in the order of the file. No vertex is merged or moved.
 //
-// OBJ, PLY (ASCII, binary of either byte order) and STL as text are read in double precision; binary
-// STL holds single precision only. All readers are our own: those of Assimp 5.2 round to single
-// precision, refuse ".5" (OBJ), end in a segmentation fault if the file is truncated (PLY), and
-// leave out vertices of a facet that has more than three (STL).
+// OBJ, PLY (ASCII, binary of either byte order) and STL as text are read in double precision;
+// binary STL holds single precision only. All readers are our own: those of Assimp 5.2 round to
+// single precision, refuse ".5" (OBJ), end in a segmentation fault if the file is truncated (PLY),
+// and leave out vertices of a facet that has more than three (STL).
 #pragma once
 
 #include "collide/dn_field/surface.hpp"

@@ -1,5 +1,5 @@
-// The page of a run that serves one (--monitor PORT), as a table in a terminal: connects, and prints
-// a frame whenever one comes.
+// The page of a run that serves one (--monitor PORT), as a table in a terminal: connects, and
+// prints a frame whenever one comes.
 //
 //     tess_monitor --connect localhost:8080 [--token T] [--frames N] [--heat Block [--by pe]]
 #include "apps/command_line.hpp"

@@ -1,5 +1,5 @@
-// Step 7: load balancing. 16 workers, of which the first 4 have five times the work. They are all on
-// one PE at first; a balancer that measures them spreads them.
+// Step 7: load balancing. 16 workers, of which the first 4 have five times the work. They are all
+// on one PE at first; a balancer that measures them spreads them.
 #include "runtime/balance.hpp"
 #include "runtime/runtime.hpp"
 

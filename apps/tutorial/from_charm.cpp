@@ -1,5 +1,6 @@
-// The program of runtime/FROM_CHARM.md: a rod of cells that cool. In each step a cell exchanges values with
-// its neighbours and takes their mean; the largest change decides whether there is another step.
+// The program of runtime/FROM_CHARM.md: a rod of cells that cool. In each step a cell exchanges
+// values with its neighbours and takes their mean; the largest change decides whether there is
+// another step.
 #include "runtime/runtime.hpp"
 
 #include <cmath>

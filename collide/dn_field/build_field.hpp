@@ -59,8 +59,8 @@ class FieldBuilder {
   /// Does not refer to `surface` afterwards. Throws Error(bad_mesh) where validate() does,
   /// Error(bad_argument) for a thickness below two cells, a grid without voxels or cells without
   /// size, a blur out of range, a two-sided field by normals, one by normals of an object of
-  /// near-zero thickness (walls.hpp), or a surface to be blurred that meets no voxel of the grid, and
-  /// Error(environment) for a field that does not fit into memory.
+  /// near-zero thickness (walls.hpp), or a surface to be blurred that meets no voxel of the grid,
+  /// and Error(environment) for a field that does not fit into memory.
   FieldBuilder(const Surface& surface, const Grid& grid, const FieldOptions& options);
   ~FieldBuilder();
   FieldBuilder(const FieldBuilder&) = delete;

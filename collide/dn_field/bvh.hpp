@@ -56,8 +56,8 @@ class Bvh {
   /// (Barill et al. 2018); 0 is exact.
   [[nodiscard]] double winding_number(Vec3 p, double accuracy) const;
 
-  /// Whether the winding number at `p` exceeds 1/2, to 0.01: summed again where a coarse sum does not
-  /// decide.
+  /// Whether the winding number at `p` exceeds 1/2, to 0.01: summed again where a coarse sum does
+  /// not decide.
   [[nodiscard]] bool is_inside(Vec3 p) const;
 
   /// The unit normal of a triangle of the surface; zero for a degenerate one.

@@ -1,6 +1,6 @@
 // Samples of a field, flat or compressed, at many points: structure of arrays in, structure of
-// arrays out, branch-free, a vector of points at a time. Points are in the object's own coordinates.
-// Any thread. The step loop samples fields in its own loops.
+// arrays out, branch-free, a vector of points at a time. Points are in the object's own
+// coordinates. Any thread. The step loop samples fields in its own loops.
 #pragma once
 
 #include "collide/dn_field/field.hpp"

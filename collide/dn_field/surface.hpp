@@ -39,9 +39,9 @@ void validate(const Surface& surface);
 /// Merges vertices with bit-equal positions: a triangle soup with equal seams becomes closed.
 [[nodiscard]] Surface welded(const Surface& surface);
 
-/// The surface of a body, before a one-sided field is built from it: welded unless it is closed, and
-/// turned as a whole if it has no rim and its triangles face inwards. Parts that disagree with each
-/// other stay as they are; the inside is where the winding number exceeds 1/2.
+/// The surface of a body, before a one-sided field is built from it: welded unless it is closed,
+/// and turned as a whole if it has no rim and its triangles face inwards. Parts that disagree with
+/// each other stay as they are; the inside is where the winding number exceeds 1/2.
 [[nodiscard]] Surface outward(const Surface& surface);
 
 struct SurfacePoint {
@@ -60,8 +60,8 @@ struct SurfacePoint {
                                     double first, double second, double third);
 
 /// Reads vertices and faces of a Wavefront OBJ file; polygons become fans, texture and normal
-/// indices are ignored. Coordinates and areas are not checked: validate() does. Throws Error(bad_file)
-/// naming file and line.
+/// indices are ignored. Coordinates and areas are not checked: validate() does. Throws
+/// Error(bad_file) naming file and line.
 [[nodiscard]] Surface read_obj(const std::string& path);
 
 }  // namespace tess::dn

@@ -1,6 +1,6 @@
-// Deliveries that are in use no more are kept with their memory: for a million objects, touching new
-// memory in each collision costs more than gridding them. The last user of a delivery, a voxel on any
-// PE of the process, gives it back.
+// Deliveries that are in use no more are kept with their memory: for a million objects, touching
+// new memory in each collision costs more than gridding them. The last user of a delivery, a voxel
+// on any PE of the process, gives it back.
 #pragma once
 
 #include "collide/parallel/part.hpp"

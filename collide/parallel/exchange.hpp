@@ -1,8 +1,8 @@
-// An exchange in which every PE has a parcel for some of the others, and has to know when it has all
-// that are for it. With a message to every PE it costs P messages per PE. Beyond some PEs parcels are
-// therefore combined (Bruck et al. 1997, "Efficient algorithms for all-to-all communications"): the
-// way from a PE to another is the difference of their numbers, modulo P, written with base r. Round k
-// takes every parcel, wherever it is, as far as digit k says:
+// An exchange in which every PE has a parcel for some of the others, and has to know when it has
+// all that are for it. With a message to every PE it costs P messages per PE. Beyond some PEs
+// parcels are therefore combined (Bruck et al. 1997, "Efficient algorithms for all-to-all
+// communications"): the way from a PE to another is the difference of their numbers, modulo P,
+// written with base r. Round k takes every parcel, wherever it is, as far as digit k says:
 //
 //     P = 64, r = 8, from 3 to 23: the difference is 20, digits 4 and 2
 //     round 0: 3 -> 3 + 4 = 7          round 1: 7 -> 7 + 2 * 8 = 23
@@ -42,8 +42,9 @@ struct Bundle {
   return n_pes <= few ? few : 8;
 }
 
-/// A PE's part of an exchange, which it makes one of. Each PE calls start() once, and receive() with
-/// what arrives, which may be earlier. Both call send(to, bundle) for the messages to other PEs.
+/// A PE's part of an exchange, which it makes one of. Each PE calls start() once, and receive()
+/// with what arrives, which may be earlier. Both call send(to, bundle) for the messages to other
+/// PEs.
 template <class Item>
 class Exchange {
  public:

@@ -1,9 +1,9 @@
-// Pairs of objects whose boxes overlap when they are larger by a slack on each side, as neighbour lists
-// have them (Verlet 1967). While every object stays within its larger box, all pairs of boxes that
-// overlap are among these: a collision tests them, and grids, sorts and searches nothing.
+// Pairs of objects whose boxes overlap when they are larger by a slack on each side, as neighbour
+// lists have them (Verlet 1967). While every object stays within its larger box, all pairs of boxes
+// that overlap are among these: a collision tests them, and grids, sorts and searches nothing.
 //
-// A PE keeps the pairs of its own objects with one another, and with those of each other PE that it was
-// given. Of these it has a copy each, without their boxes:
+// A PE keeps the pairs of its own objects with one another, and with those of each other PE that it
+// was given. Of these it has a copy each, without their boxes:
 //
 //     PE 0   3 with 8, 4 with 8                     within the PE, by positions in its list
 //            5 with 0, 6 with 1, 6 with 0           with PE 2, by positions in the copies
@@ -24,16 +24,16 @@
 
 namespace tess::collide {
 
-/// The box with all faces further out by `slack`, which is not negative. It contains the box, whatever
-/// is rounded.
+/// The box with all faces further out by `slack`, which is not negative. It contains the box,
+/// whatever is rounded.
 [[nodiscard]] Aabb larger_box(const Aabb& box, double slack) noexcept;
 
 /// The objects of this PE as the PE's own, numbered by their positions, with larger boxes: what is
 /// searched for pairs to keep.
 [[nodiscard]] ObjectList larger_objects(const ObjectList& objects, double slack, PeId pe);
 
-/// True if the sample of larger objects says that they have many times the pairs that are kept: these
-/// are not searched, which would take long.
+/// True if the sample of larger objects says that they have many times the pairs that are kept:
+/// these are not searched, which would take long.
 [[nodiscard]] bool are_far_too_many(const Summary& larger, Touching touching, std::int32_t n_pes);
 
 class KeptPairs {

@@ -9,7 +9,8 @@
 //                Managers of other processes one message for several voxels
 //
 // There is no barrier: a voxel does not wait for other voxels, and several collisions may overlap.
-// The reports of Managers to homes, and the answers, are exchanged in a few messages (exchange.hpp).
+// The reports of Managers to homes, and the answers, are exchanged in a few messages
+// (exchange.hpp).
 #pragma once
 
 #include "collide/collider_options.hpp"

@@ -1,5 +1,5 @@
-// A group with one member per PE for colliders with a slack: it keeps pairs (kept_pairs.hpp) from one
-// collision for those after it. Clients pass their objects to it. In a collision the members
+// A group with one member per PE for colliders with a slack: it keeps pairs (kept_pairs.hpp) from
+// one collision for those after it. Clients pass their objects to it. In a collision the members
 //
 //     prepare    say whether their kept pairs hold for what was submitted
 //     enlarge    if one does not: pass larger boxes to the Managers, which find their pairs as those of
@@ -38,15 +38,16 @@ class Neighbours : public Group<Neighbours> {
   Neighbours(GroupProxy<Manager> managers, PairRules rules, double slack)
       : managers_(managers), rules_(rules), slack_(slack) {}
 
-  /// As Manager::submit(). Throws Error (bad_argument) for capsules: an object may turn within its box.
+  /// As Manager::submit(). Throws Error (bad_argument) for capsules: an object may turn within its
+  /// box.
   void submit(const Objects& objects);
   void submit(const std::vector<Item>& items, std::span<const Capsule> capsules);
   void receive(const Submission& late) { submit(Objects{late.owner, late.model, late.boxes}); }
 
   /// Takes what was submitted. The result is the collision whose pairs hold on all PEs, or 0.
   void prepare(std::uint64_t step, const Callback<std::uint64_t>& target);
-  /// Passes the objects to the Managers for their collision `search`, with larger boxes or, for the last
-  /// time, with their own. The result is for make_plan().
+  /// Passes the objects to the Managers for their collision `search`, with larger boxes or, for the
+  /// last time, with their own. The result is for make_plan().
   void enlarge(std::uint64_t step, std::uint64_t search, bool larger, std::size_t n_sampled,
                const Callback<Summary>& target);
   void keep(std::uint64_t step, Hits found);

@@ -78,8 +78,8 @@ void ObjectList::add_source(const Source& source) {
   sources_.push_back(source);
 }
 
-/// One pass over the boxes, in blocks that stay in the cache: they are checked, surveyed and copied.
-/// Only then does the list have them.
+/// One pass over the boxes, in blocks that stay in the cache: they are checked, surveyed and
+/// copied. Only then does the list have them.
 void ObjectList::append(const Objects& objects, PeId pe) {
   const std::size_t n = objects.boxes.size(), begin = boxes_.size();
   if (n == 0) return;

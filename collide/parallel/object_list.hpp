@@ -24,18 +24,18 @@ namespace tess::collide {
 
 class ObjectList {
  public:
-  /// Objects that are submitted on a PE. Both throw Error (bad_value) with the object if a box is not
-  /// valid, or with the numbers if objects are more than 2^28, or capsules neither none nor one per
-  /// object; then they change nothing.
+  /// Objects that are submitted on a PE. Both throw Error (bad_value) with the object if a box is
+  /// not valid, or with the numbers if objects are more than 2^28, or capsules neither none nor one
+  /// per object; then they change nothing.
   void append(const Objects& objects, PeId pe);
   void append(std::span<const Item> items, std::span<const Capsule> capsules, PeId pe);
   /// Objects of another list. Adds their entries in this list to `copies`. They are not counted in
   /// bounds() and has_octave().
   void append(const ObjectList& from, std::span<const search::Entry> entries,
               std::vector<search::Entry>& copies);
-  /// Divides the objects of this PE into pieces that are at most `longest` long on each axis, if no more
-  /// than 64 are needed for that: the list has a box for each piece then. All lists of a collision are
-  /// divided, or none.
+  /// Divides the objects of this PE into pieces that are at most `longest` long on each axis, if no
+  /// more than 64 are needed for that: the list has a box for each piece then. All lists of a
+  /// collision are divided, or none.
   void divide(const search::Frame& frame, double longest, PeId pe);
   /// Makes room for objects of other lists.
   void reserve(std::size_t n) {

@@ -1,5 +1,6 @@
 // Finds the pairs of a voxel. Usually they are few and found at once. A voxel with very many, for
-// instance of n identical boxes, is searched in portions, so that n * n pairs never stand in memory:
+// instance of n identical boxes, is searched in portions, so that n * n pairs never stand in
+// memory:
 //
 //     pairs within S       too many?  within S1, within S2, and of S1 with S2
 //     pairs of S with T    too many?  of S1 with T, and of S2 with T

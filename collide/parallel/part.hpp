@@ -1,6 +1,6 @@
 // What a Manager sends to a voxel: the objects of its PE that touch it. Within a process the boxes
-// stay where they are, and a part is a range of a list that all voxels share. To another process the
-// boxes of several voxels are sent together (shipment.hpp), or those of one part.
+// stay where they are, and a part is a range of a list that all voxels share. To another process
+// the boxes of several voxels are sent together (shipment.hpp), or those of one part.
 #pragma once
 
 #include "collide/parallel/object_list.hpp"

@@ -10,7 +10,8 @@ namespace {
 using Object = PieceTable::Object;
 using Boxes = std::array<Aabb, search::most_pieces>;
 
-/// Whether piece p of a and piece q of b are the first ones that overlap. The pieces are made again.
+/// Whether piece p of a and piece q of b are the first ones that overlap. The pieces are made
+/// again.
 bool is_first(const Object& a, std::uint32_t p, const Object& b, std::uint32_t q) {
   if (a.n_pieces == 1 && b.n_pieces == 1) return true;
   Boxes of_a, of_b;

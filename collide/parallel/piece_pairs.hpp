@@ -1,7 +1,7 @@
-// The pairs of objects among the pairs of their pieces, as serially (search/thin_pairs.hpp): a voxel
-// finds pieces whose boxes overlap. Objects whose capsules are apart, or whose boxes do not overlap, are
-// no pair. If several pairs of their pieces overlap, in this voxel or in others, the first of them counts:
-// the first in the order of the pieces of the object with the lower number.
+// The pairs of objects among the pairs of their pieces, as serially (search/thin_pairs.hpp): a
+// voxel finds pieces whose boxes overlap. Objects whose capsules are apart, or whose boxes do not
+// overlap, are no pair. If several pairs of their pieces overlap, in this voxel or in others, the
+// first of them counts: the first in the order of the pieces of the object with the lower number.
 #pragma once
 
 #include "collide/parallel/object_list.hpp"

@@ -1,5 +1,6 @@
-// Long thin objects in pieces (search/thin_objects.hpp): for each box of a list, the object of which
-// it is a piece. What a voxel knows of the whole object is enough to make all its pieces again.
+// Long thin objects in pieces (search/thin_objects.hpp): for each box of a list, the object of
+// which it is a piece. What a voxel knows of the whole object is enough to make all its pieces
+// again.
 #pragma once
 
 #include "collide/capsule.hpp"
@@ -21,7 +22,8 @@ class PieceTable {
     std::int32_t unused = 0;
   };
 
-  /// Boxes that are added next are pieces of this object. Its capsule is also stored in eight floats.
+  /// Boxes that are added next are pieces of this object. Its capsule is also stored in eight
+  /// floats.
   void add_object(const Object& object, const search::Frame& frame) {
     objects_.push_back(object);
     capsules_.push_back(search::slim(object.capsule, frame));

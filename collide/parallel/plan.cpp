@@ -57,8 +57,8 @@ Summary::Summary(const ObjectList& objects, std::int32_t pe, std::size_t n_sampl
   for (std::uint32_t i = 0; has_capsules && i < objects.size(); ++i)
     add(objects.boxes()[i], objects.capsule(i));
   const std::size_t n_taken = std::min<std::size_t>(n, n_sampled);
-  // The few of many PEs have other places on each: clients often submit in the same order everywhere,
-  // such as one model first.
+  // The few of many PEs have other places on each: clients often submit in the same order
+  // everywhere, such as one model first.
   const std::size_t seed = n_taken <= few_sampled ? static_cast<std::size_t>(pe) : 0;
   for (std::size_t i = 0; i < n_taken; ++i) {
     const std::size_t at = search::scattered(i, n_taken, n, seed);
@@ -147,8 +147,8 @@ double chosen_size(const Summary& summary, std::int32_t n_pes) {
     const double least = search::size_of_octave<double>(summary.octaves.least());
     size = std::min(size, std::max(edge_of(points), least));
   }
-  // Objects that are a little too large for the voxels would stand on a level of few voxels, each of
-  // which has to meet all small objects in it.
+  // Objects that are a little too large for the voxels would stand on a level of few voxels, each
+  // of which has to meet all small objects in it.
   const double fitting = search::size_of_octave<double>(summary.octaves.greatest());
   return size < fitting && fitting <= 2 * size ? fitting : size;
 }
@@ -168,7 +168,8 @@ PlanOfPieces choose_pieces(const Summary& summary, const ColliderOptions& option
   return {longest.has_value(), longest.value_or(0), frame};
 }
 
-/// As if the pieces had been submitted. They may be of any size up to the largest, which this estimates.
+/// As if the pieces had been submitted. They may be of any size up to the largest, which this
+/// estimates.
 Summary divided(const Summary& summary, double longest) {
   Summary out = summary;
   out.sample.clear();

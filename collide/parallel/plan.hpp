@@ -80,13 +80,13 @@ struct Plan {
   [[nodiscard]] Level highest() const noexcept { return 31 - std::countl_zero(levels); }
 };
 
-/// How many boxes each of so many PEs gives to the sample from which a size of zero is chosen. Another
-/// size needs none. All PEs wait for the sample, so many PEs give few.
+/// How many boxes each of so many PEs gives to the sample from which a size of zero is chosen.
+/// Another size needs none. All PEs wait for the sample, so many PEs give few.
 [[nodiscard]] std::size_t n_sampled_per_pe(const Point& size, std::int32_t n_pes) noexcept;
 
-/// For so many PEs. With a size of zero, the size that is expected to cost least; so with the length of pieces. A size that is too small costs time
-/// but no memory: objects stand on the level of their size. Throws Error (out_of_range) if a
-/// coordinate has no 32-bit cell.
+/// For so many PEs. With a size of zero, the size that is expected to cost least; so with the
+/// length of pieces. A size that is too small costs time but no memory: objects stand on the level
+/// of their size. Throws Error (out_of_range) if a coordinate has no 32-bit cell.
 [[nodiscard]] Plan make_plan(const Summary& summary, std::int32_t n_pes,
                              const ColliderOptions& options, std::uint64_t step);
 

@@ -18,7 +18,8 @@ struct Totals {
   bool is_settled = false;
   std::uint64_t rank = 0;  // of the maker
 
-  /// A PE makes the voxel only if few objects have to be sent to it, or if the voxel is there already.
+  /// A PE makes the voxel only if few objects have to be sent to it, or if the voxel is there
+  /// already.
   void offer(const VoxelRecord& record, PeId pe) {
     if (record.is_here != 0) {
       maker = pe;

@@ -18,10 +18,10 @@ struct RecordsOf {
   std::span<const VoxelRecord> records;
 };
 
-/// One answer per record of those PEs that have any. A voxel is left out if it can have no pair: one
-/// object, objects of only one model, or no object of its own level. Otherwise its maker is the PE
-/// where it is; if it is on none of the PEs, one of those that have at least half as many objects as
-/// the PE with most: another one for another voxel.
+/// One answer per record of those PEs that have any. A voxel is left out if it can have no pair:
+/// one object, objects of only one model, or no object of its own level. Otherwise its maker is the
+/// PE where it is; if it is on none of the PEs, one of those that have at least half as many
+/// objects as the PE with most: another one for another voxel.
 [[nodiscard]] std::vector<std::vector<VoxelAnswer>> answers_to(std::span<const RecordsOf> all,
                                                                WithinModel within_model);
 

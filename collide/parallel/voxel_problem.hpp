@@ -25,9 +25,9 @@ struct ModelSet {
   std::span<const search::Entry> entries;
 };
 
-/// Objects of several parts by model. Entries are copied only if the objects of a model do not stand
-/// together, and boxes only if they stand in several lists. So a voxel of two planes, each on its
-/// own PE, copies nothing.
+/// Objects of several parts by model. Entries are copied only if the objects of a model do not
+/// stand together, and boxes only if they stand in several lists. So a voxel of two planes, each on
+/// its own PE, copies nothing.
 class ByModel {
  public:
   /// Starts again.

@@ -3,8 +3,8 @@
 //
 //     x <= y  =>  cell(x) <= cell(y)
 //
-// holds for every rounding, which is all that entry.hpp needs. The border is no limit of the method:
-// a border cell that receives too much is divided again.
+// holds for every rounding, which is all that entry.hpp needs. The border is no limit of the
+// method: a border cell that receives too much is divided again.
 //
 // The conversion is a clamp and a truncation; bench_collide compares it with the floor and with the
 // trick of the paper's appendix A.

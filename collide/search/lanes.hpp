@@ -85,9 +85,9 @@ class Lanes {
     return out;
   }
 
-  /// Compares a box with the boxes from `begin` to at least `end` (the last vector is completed), and
-  /// adds the pairs to `out`, without a branch per pair. A pair counts if the boxes overlap, if the
-  /// voxel is responsible for it, and with `by_model` if the models differ.
+  /// Compares a box with the boxes from `begin` to at least `end` (the last vector is completed),
+  /// and adds the pairs to `out`, without a branch per pair. A pair counts if the boxes overlap, if
+  /// the voxel is responsible for it, and with `by_model` if the models differ.
   template <Touching touching, bool by_model>
   [[gnu::always_inline]] void compare(const Probe& probe, std::size_t begin, std::size_t end,
                                       PairBuffer& out) const {

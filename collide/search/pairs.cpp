@@ -110,7 +110,8 @@ class Plan {
     if (solved) ++search_.statistics().n_levels;
     return solved;
   }
-  /// From a sample: 4 096 of the objects, but at most an eighth, which costs little beside the search.
+  /// From a sample: 4 096 of the objects, but at most an eighth, which costs little beside the
+  /// search.
   bool levels_seem_cheaper(Part& whole) {
     const double n = static_cast<double>(whole.problem.a.size() + whole.problem.b.size());
     const double scale = std::max(8.0, n / 4096);

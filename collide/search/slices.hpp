@@ -1,8 +1,8 @@
-// Sorts the boxes of a voxel into slices along one axis, for a sweep, without a comparison sort. The
-// slice is a monotone function of the coordinate. So if a box may overlap one that reaches from lo
-// to hi, its lower corner lies in the slice of hi or an earlier one, and its position is not before
-// first(slice of lo). The sweep tests only this range of positions. The choice of the slices affects
-// only the speed.
+// Sorts the boxes of a voxel into slices along one axis, for a sweep, without a comparison sort.
+// The slice is a monotone function of the coordinate. So if a box may overlap one that reaches from
+// lo to hi, its lower corner lies in the slice of hi or an earlier one, and its position is not
+// before first(slice of lo). The sweep tests only this range of positions. The choice of the slices
+// affects only the speed.
 #pragma once
 
 #include "collide/box.hpp"

@@ -41,8 +41,8 @@ template <class Real, std::size_t D>
 Box<Real, D> checked_bounds(std::span<const Box<Real, D>> boxes, const char* set) {
   Box<Real, D> bounds = no_box<Real, D>();
   if (boxes.empty()) return bounds;
-  // Eight numbers at a time: a box, and of the next one what fits. Four streams keep the memory twice
-  // as busy as one.
+  // Eight numbers at a time: a box, and of the next one what fits. Four streams keep the memory
+  // twice as busy as one.
   using Eight [[gnu::vector_size(8 * sizeof(Real))]] = Real;
   using Bits = decltype(Eight{} < Eight{});
   Eight least = Eight{} + std::numeric_limits<Real>::infinity(), greatest = -least;

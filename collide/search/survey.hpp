@@ -1,5 +1,5 @@
-// What is known of the boxes before a search: their bounds, whether all are valid, and how large each
-// is.
+// What is known of the boxes before a search: their bounds, whether all are valid, and how large
+// each is.
 #pragma once
 
 #include "collide/box.hpp"

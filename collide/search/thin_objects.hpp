@@ -1,7 +1,7 @@
 // Long thin objects: their boxes are mostly empty, so of the pairs of boxes hardly any is a pair of
 // objects. Their capsules (capsule.hpp) tell most of them apart. If the boxes are so long that too
-// many of them overlap, the objects are divided along their capsules into pieces, each with a box of
-// its own: what is searched then is near the object, not near its box.
+// many of them overlap, the objects are divided along their capsules into pieces, each with a box
+// of its own: what is searched then is near the object, not near its box.
 //
 //     +---------+            +--+
 //     |        /|            | /+--+
@@ -69,16 +69,17 @@ inline constexpr int most_pieces = 64;
 /// Its longest extent on an axis, without the radius.
 [[nodiscard]] double longest_extent(const Capsule& capsule) noexcept;
 
-/// Writes the boxes of `n` pieces to `out`, and returns their end. A piece of the object is the part
-/// that is nearest to a piece of the capsule's segment, so the boxes contain the object together.
-/// Pieces of the capsule beside the object's box have none.
+/// Writes the boxes of `n` pieces to `out`, and returns their end. A piece of the object is the
+/// part that is nearest to a piece of the capsule's segment, so the boxes contain the object
+/// together. Pieces of the capsule beside the object's box have none.
 template <class Real>
 Box<Real, 3>* cut(const Box<Real, 3>& box, const Capsule& capsule, int n,
                   Box<Real, 3>* out) noexcept;
 
-/// Whether piece p of x and piece q of y, whose boxes overlap, are the first ones of the two objects that
-/// do, in the order of the pieces of x. The nearest ones are looked at first: if there is an earlier pair,
-/// it is mostly one of them. Boxes of pieces touch where the objects may overlap.
+/// Whether piece p of x and piece q of y, whose boxes overlap, are the first ones of the two
+/// objects that do, in the order of the pieces of x. The nearest ones are looked at first: if there
+/// is an earlier pair, it is mostly one of them. Boxes of pieces touch where the objects may
+/// overlap.
 template <class Real>
 [[nodiscard]] bool are_first(std::span<const Box<Real, 3>> x, std::uint32_t p,
                              std::span<const Box<Real, 3>> y, std::uint32_t q,

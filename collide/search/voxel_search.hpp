@@ -35,8 +35,8 @@ class VoxelSearch {
     statistics_ = {};
   }
   /// Finds the pairs of a problem. `region` contains the objects of `a`. With `swapped` the sink is
-  /// told that `a` is the second set. `choice` is that of chooser(), if it is known. Returns false, without a pair, if more than the greatest
-  /// number of entries were needed.
+  /// told that `a` is the second set. `choice` is that of chooser(), if it is known. Returns false,
+  /// without a pair, if more than the greatest number of entries were needed.
   [[nodiscard]] bool solve(const Problem<Real, D>& problem, const Box<Real, D>& region,
                            bool swapped, const std::optional<Choice<D>>& choice = {});
   void set_most_entries(std::size_t n) noexcept { most_entries_ = n; }

@@ -4,8 +4,8 @@
 //
 //     x <= y  =>  cell(x) <= cell(y)
 //
-// The proof in search/entry.hpp needs only this, so rounding cannot lose a pair. Public libraries that
-// lose 15 % of the pairs use a second formula, k * size + origin, which rounds differently.
+// The proof in search/entry.hpp needs only this, so rounding cannot lose a pair. Public libraries
+// that lose 15 % of the pairs use a second formula, k * size + origin, which rounds differently.
 #pragma once
 
 #include "collide/box.hpp"

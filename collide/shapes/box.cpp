@@ -1,6 +1,6 @@
-// Boxes and the hulls of up to four points: exact separating planes (Gottschalk, Lin and Manocha 1996).
-// Those that are parallel to an axis and to an edge of the hull are lines across a rectangle, so all
-// signs are those of orientation.hpp.
+// Boxes and the hulls of up to four points: exact separating planes (Gottschalk, Lin and Manocha
+// 1996). Those that are parallel to an axis and to an edge of the hull are lines across a
+// rectangle, so all signs are those of orientation.hpp.
 #include "collide/shapes/convex.hpp"
 #include "collide/shapes/orientation.hpp"
 #include "collide/tetrahedron.hpp"

@@ -12,8 +12,8 @@ double squared_length(const Point& a, const Point& b) noexcept {
   return out;
 }
 
-/// At least the distance of a point from a segment: that to one of its points, in the norm that adds
-/// the coordinates up, whose terms do not underflow as squares do.
+/// At least the distance of a point from a segment: that to one of its points, in the norm that
+/// adds the coordinates up, whose terms do not underflow as squares do.
 double distance_bound(const Point& p, const Point& from, const Point& to, double length2) noexcept {
   Point way, rest;
   double along = 0;

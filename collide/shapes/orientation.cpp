@@ -12,8 +12,8 @@ namespace {
 
 __extension__ using SignedWide = __int128;
 
-/// The sign of the determinant if the differences are multiples of one power of two, as on a grid or
-/// with coordinates of few digits: in 128-bit integers, five times as fast as exact numbers.
+/// The sign of the determinant if the differences are multiples of one power of two, as on a grid
+/// or with coordinates of few digits: in 128-bit integers, five times as fast as exact numbers.
 std::optional<int> sign_on_grid(const Difference& u, const Difference& v,
                                 const Difference& w) noexcept {
   constexpr int n_bits = 40;  // three factors and a sum of six products have 123 bits

@@ -10,8 +10,8 @@
 
 namespace tess::collide::shapes {
 
-/// A double and a bound of its error (running error analysis: Higham 2002, section 3.3). An overflow
-/// makes the bound infinite or NaN.
+/// A double and a bound of its error (running error analysis: Higham 2002, section 3.3). An
+/// overflow makes the bound infinite or NaN.
 struct RoundedNumber {
   static constexpr double unit = 0x1p-53;
   static constexpr double smallest = 0x1p-1000;  // above all that a product loses by underflow

@@ -47,8 +47,8 @@ Alone alone(const Signs& s) noexcept {
 
 /// Two triangles that meet each other's plane, renumbered (Devillers and Guigue 2003): p is alone
 /// above the other triangle's plane, or on it, and q and r are below or on it. Each triangle meets
-/// the line that the planes have in common in an interval, [pr, pq] of the first and [pq, pr] of the
-/// second, in the same direction.
+/// the line that the planes have in common in an interval, [pr, pq] of the first and [pq, pr] of
+/// the second, in the same direction.
 struct Arrangement {
   const Point *p1, *q1, *r1;
   const Point *p2, *q2, *r2;
@@ -76,8 +76,8 @@ struct Arrangement {
   }
 };
 
-/// Whether an edge of `t` has all corners of `other` on its outer side, in a projection in which `t`
-/// runs in direction `turn`.
+/// Whether an edge of `t` has all corners of `other` on its outer side, in a projection in which
+/// `t` runs in direction `turn`.
 bool has_separating_edge(const Triangle& t, int turn, const Triangle& other,
                          Dropped axis) noexcept {
   for (std::size_t i = 0; i < 3; ++i) {

@@ -33,8 +33,8 @@ template <class MakeNumber>
   return vector(number, to) - vector(number, from);
 }
 
-/// Within the plane of a triangle: on which side of each edge (from a, b and c) the nearest point to
-/// `p` is; 1 is inside. All are 0 if and only if the triangle is degenerate.
+/// Within the plane of a triangle: on which side of each edge (from a, b and c) the nearest point
+/// to `p` is; 1 is inside. All are 0 if and only if the triangle is degenerate.
 [[nodiscard]] inline std::array<int, 3> edge_sides(const std::array<Point, 3>& corners,
                                                    const Point& p) noexcept {
   const auto normal = [&](auto number) {

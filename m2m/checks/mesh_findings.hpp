@@ -1,6 +1,6 @@
-// What validate() looks for, counted over ranges of a mesh. The findings of ranges are joined in any
-// order, so PEs that hold a range each check a mesh together and give the messages of one that holds
-// all.
+// What validate() looks for, counted over ranges of a mesh. The findings of ranges are joined in
+// any order, so PEs that hold a range each check a mesh together and give the messages of one that
+// holds all.
 #pragma once
 
 #include "m2m/mesh.hpp"

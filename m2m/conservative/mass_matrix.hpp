@@ -1,5 +1,5 @@
-// The mass matrix of linear elements on the covered region C of a part of the target mesh, element by
-// element. For a tetrahedron T inside C it is the consistent one,
+// The mass matrix of linear elements on the covered region C of a part of the target mesh, element
+// by element. For a tetrahedron T inside C it is the consistent one,
 //
 //     M_ab = integral over T of psi_a psi_b = |T| (1 + delta_ab) / 20 .
 //
@@ -8,10 +8,10 @@
 //
 //     M_ab = e (1 + delta_ab) + delta_ab (c_a - 5 e),   e = min c_a / 5 <= |T| / 20,
 //
-// the consistent matrix scaled, and the rest on the diagonal. So constants and integrals are kept, a
-// sliver gives no vertex a value far from those of the source, and the eigenvalues relative to the
-// diagonal lie in [1/2, 5/2] for every mesh and every coverage (Wathen 1987): projection.hpp needs no
-// other property.
+// the consistent matrix scaled, and the rest on the diagonal. So constants and integrals are kept,
+// a sliver gives no vertex a value far from those of the source, and the eigenvalues relative to
+// the diagonal lie in [1/2, 5/2] for every mesh and every coverage (Wathen 1987): projection.hpp
+// needs no other property.
 #pragma once
 
 #include "m2m/mesh_view.hpp"

@@ -170,8 +170,8 @@ void collect_near(const MeshView& source, const Cover& cover, std::span<const st
 }  // namespace
 
 double quantum_of(double volume) {
-  // Sums of integrals stay below the volume, so they have at most 53 bits, unless the source overlaps
-  // itself.
+  // Sums of integrals stay below the volume, so they have at most 53 bits, unless the source
+  // overlaps itself.
   return volume > 0 ? std::ldexp(1.0, std::ilogb(volume) - 52) : 1;
 }
 

@@ -1,5 +1,5 @@
-// Rows that integrate a source field against the basis functions of a target over the overlaps of their
-// tetrahedra (the supermesh): the right-hand sides of a conservative transfer,
+// Rows that integrate a source field against the basis functions of a target over the overlaps of
+// their tetrahedra (the supermesh): the right-hand sides of a conservative transfer,
 //
 //     load_i = integral of u_source psi_i = sum over a of w_ia u_a,
 //     w_ia = sum over source tetrahedra S and target tetrahedra T of (integral over S ∩ T of phi_a psi_i) .
@@ -7,9 +7,9 @@
 // The weights depend only on the meshes, so a search computes them once.
 //
 // Each integral is rounded to a multiple of the quantum of i, which is so large that all sums of
-// integrals with psi_i are exact. So weights have the same bits for every order of addition: wherever
-// the source is cut, and in as many sums as pieces overlap i. They are never negative: load_i / sum
-// over a of w_ia is a mean of source values, however little of i is covered.
+// integrals with psi_i are exact. So weights have the same bits for every order of addition:
+// wherever the source is cut, and in as many sums as pieces overlap i. They are never negative:
+// load_i / sum over a of w_ia is a mean of source values, however little of i is covered.
 #pragma once
 
 #include "m2m/mesh_view.hpp"

@@ -12,10 +12,10 @@
 //                correction: Zalesak 1979; Löhner, Morgan, Peraire and Vahdati 1987; Kuzmin, Möller
 //                and Turek 2003; for projections Farrell et al. 2009). Conserves, too.
 //
-// With the diagonal as preconditioner all eigenvalues lie in [1/2, 5/2] (mass_matrix.hpp). So a fixed
-// number of Chebyshev steps solves the system to the last digits (Saad 2003, section 12.3.2). Unlike
-// conjugate gradients they need no sum over the mesh: a part waits only for its neighbours, and the
-// result has the same bits for every partition.
+// With the diagonal as preconditioner all eigenvalues lie in [1/2, 5/2] (mass_matrix.hpp). So a
+// fixed number of Chebyshev steps solves the system to the last digits (Saad 2003, section 12.3.2).
+// Unlike conjugate gradients they need no sum over the mesh: a part waits only for its neighbours,
+// and the result has the same bits for every partition.
 //
 // The solver knows no messages. step() computes until it needs values of ghosts, which their owners
 // have; the caller provides them, now or later, and calls step() again:

@@ -25,9 +25,10 @@ struct Candidate {
 };
 
 /// True if `a` is better than `b`. A corner that coincides with the point comes first, then
-/// tetrahedra that hold the point, then the nearer one, then the lower one. With corners first, a mesh that is transferred
-/// onto itself keeps its values even if it does not conform (a vertex on the face of a tetrahedron
-/// that does not use it). This is a strict total order of distinct tetrahedra.
+/// tetrahedra that hold the point, then the nearer one, then the lower one. With corners first, a
+/// mesh that is transferred onto itself keeps its values even if it does not conform (a vertex on
+/// the face of a tetrahedron that does not use it). This is a strict total order of distinct
+/// tetrahedra.
 [[nodiscard]] constexpr bool better(const Candidate& a, const Candidate& b) noexcept {
   if (a.place != b.place) return a.place == Place::corner;
   const bool a_holds = a.status < Status::snapped, b_holds = b.status < Status::snapped;

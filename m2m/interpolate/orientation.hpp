@@ -11,8 +11,9 @@
 
 namespace tess::m2m {
 
-/// The corners of the face opposite to each corner, outward from a tetrahedron that is not inverted.
-/// For a point inside, its orientations to the four faces have the sign of the tetrahedron.
+/// The corners of the face opposite to each corner, outward from a tetrahedron that is not
+/// inverted. For a point inside, its orientations to the four faces have the sign of the
+/// tetrahedron.
 inline constexpr std::array<std::array<std::size_t, 3>, 4> faces_of_tet{
     {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
 

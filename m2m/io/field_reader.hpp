@@ -34,8 +34,8 @@ class FieldReader {
 
   [[nodiscard]] const std::vector<FileField>& fields() const noexcept { return fields_; }
   [[nodiscard]] const std::vector<double>& times() const noexcept { return times_; }
-  /// The values of fields()[field] at times()[step], for the vertices or tetrahedra of `mesh`, which
-  /// was read from the same file. Row-major. Throws Error if values are missing.
+  /// The values of fields()[field] at times()[step], for the vertices or tetrahedra of `mesh`,
+  /// which was read from the same file. Row-major. Throws Error if values are missing.
   [[nodiscard]] virtual std::vector<double> read(const TetMesh& mesh, std::size_t field,
                                                  std::size_t step) const = 0;
 

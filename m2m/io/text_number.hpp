@@ -1,5 +1,5 @@
-// A number in the text of a file, as other programs may have written it: with a plus sign, or beyond
-// what floating point holds, which becomes zero or infinite.
+// A number in the text of a file, as other programs may have written it: with a plus sign, or
+// beyond what floating point holds, which becomes zero or infinite.
 #pragma once
 
 #include <charconv>
@@ -10,7 +10,8 @@
 
 namespace tess::m2m {
 
-/// Reads the number that [first, last) begins with, and returns its end, or `first` if there is none.
+/// Reads the number that [first, last) begins with, and returns its end, or `first` if there is
+/// none.
 template <class T>
 const char* read_text_number(const char* first, const char* last, T& value) {
   const char* begin = first;

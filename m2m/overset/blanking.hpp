@@ -1,6 +1,6 @@
 // What a piece of an overset mesh knows of its points: their roles, and the donors of its fringe.
-// A member of the application's chare. It knows no message: a coupling takes flags() from the pieces
-// of one mesh to offered() of another, as it takes fields.
+// A member of the application's chare. It knows no message: a coupling takes flags() from the
+// pieces of one mesh to offered() of another, as it takes fields.
 #pragma once
 
 #include "m2m/overset/roles.hpp"
@@ -45,8 +45,8 @@ struct JoinBlankingReports {
 
 class Blanking {
  public:
-  /// The usual numbers of the field (PLOT3D, PEGASUS, Suggar++): a fringe point has minus the number
-  /// of the mesh that it takes its value from.
+  /// The usual numbers of the field (PLOT3D, PEGASUS, Suggar++): a fringe point has minus the
+  /// number of the mesh that it takes its value from.
   static constexpr std::int32_t hole = 0, field = 1, orphan = 101;
 
   /// Assigns the roles anew (roles_of()); fringe points have no donor yet. Until settle(), the
@@ -61,9 +61,9 @@ class Blanking {
   /// What it takes: n_owned × 2, the same interpolated.
   [[nodiscard]] std::span<double> offered() { return offered_; }
 
-  /// Call it after a coupling has taken the flags of the mesh with number `mesh_number` (1 or more).
-  /// `status`: of that coupling, per point owned. Fringe points take the donor of the best quality;
-  /// of equal ones that of the lower mesh. So couplings may come in any order.
+  /// Call it after a coupling has taken the flags of the mesh with number `mesh_number` (1 or
+  /// more). `status`: of that coupling, per point owned. Fringe points take the donor of the best
+  /// quality; of equal ones that of the lower mesh. So couplings may come in any order.
   void settle(const MeshView& mesh, std::span<const Status> status, std::int32_t mesh_number);
 
   /// Per point owned: hole, field, orphan, or minus the number of the donor's mesh.

@@ -1,5 +1,5 @@
-// The boundary of an overset mesh: walls, which cut holes into other meshes, and the outer boundary,
-// which receives values from them. Boundary faces are those of one tetrahedron only.
+// The boundary of an overset mesh: walls, which cut holes into other meshes, and the outer
+// boundary, which receives values from them. Boundary faces are those of one tetrahedron only.
 #pragma once
 
 #include "m2m/mesh.hpp"
@@ -19,9 +19,9 @@ struct OversetBoundary {
 };
 
 /// The wall is the side set of the given name. Without a name it is every connected part of the
-/// boundary that encloses a cavity, as the inner sphere of a spherical shell does. The rest is outer
-/// boundary. Takes O(n log n) for n tetrahedra.
-/// Throws Error (bad_argument) if the mesh has no such side set.
+/// boundary that encloses a cavity, as the inner sphere of a spherical shell does. The rest is
+/// outer boundary. Takes O(n log n) for n tetrahedra. Throws Error (bad_argument) if the mesh has
+/// no such side set.
 [[nodiscard]] OversetBoundary overset_boundary(const TetMesh& mesh, const std::string& wall = {});
 
 }  // namespace tess::m2m

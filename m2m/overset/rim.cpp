@@ -33,7 +33,8 @@ std::vector<Edge> rim_edges(std::span<const std::array<VertexId, 3>> triangles) 
   return rim;
 }
 
-/// Cuts the edges, of which as many begin as end at each vertex, into loops that visit no vertex twice.
+/// Cuts the edges, of which as many begin as end at each vertex, into loops that visit no vertex
+/// twice.
 std::vector<std::vector<VertexId>> loops_of(const std::vector<Edge>& rim) {
   std::map<VertexId, std::vector<VertexId>> next;
   for (auto edge = rim.rbegin(); edge != rim.rend(); ++edge)

@@ -1,6 +1,7 @@
 // Closes a surface that has holes. Every directed edge of a closed surface has an opposite one; the
-// edges without form closed loops, the rim. A cap is a fan of triangles from the centroid of a loop.
-// Capped surfaces are closed whatever they were: holes, flipped and missing triangles, T-junctions.
+// edges without form closed loops, the rim. A cap is a fan of triangles from the centroid of a
+// loop. Capped surfaces are closed whatever they were: holes, flipped and missing triangles,
+// T-junctions.
 #pragma once
 
 #include "m2m/mesh.hpp"
@@ -26,7 +27,8 @@ struct SameDirection {
   std::pair<VertexId, VertexId> edge;
 };
 
-/// The first such edge of a surface each of whose edges has two triangles; of any other surface none.
+/// The first such edge of a surface each of whose edges has two triangles; of any other surface
+/// none.
 std::optional<SameDirection> same_direction(std::span<const std::array<VertexId, 3>> triangles);
 
 /// Appends the centroids of the loops to `points` and the caps to `triangles`. Points at the same

@@ -44,8 +44,8 @@ class Wall {
   /// The winding number of a point that is not on the wall.
   [[nodiscard]] int winding_number(const Point& p) const;
 
-  /// Those triangles that matter to the points of a box: the answers there are the same. A piece of a
-  /// mesh needs no more of a large wall.
+  /// Those triangles that matter to the points of a box: the answers there are the same. A piece of
+  /// a mesh needs no more of a large wall.
   [[nodiscard]] Wall seen_from(const Aabb& box) const;
 
   [[nodiscard]] Aabb box() const;

@@ -1,5 +1,5 @@
-// How a coupling reads the values of a chare, or writes to its memory: a member of the chare's class
-// that shows them, as a value in messages.
+// How a coupling reads the values of a chare, or writes to its memory: a member of the chare's
+// class that shows them, as a value in messages.
 #pragma once
 
 #include "m2m/parallel/couplings.hpp"
@@ -25,7 +25,8 @@ struct AccessorKind : tess::detail::Registered {
   Show show;
   std::uint64_t channel;  ///< for messages to this member
 };
-/// Shows what a piece gives: a row per point, tetrahedron or corner, as the coupling's source_values say.
+/// Shows what a piece gives: a row per point, tetrahedron or corner, as the coupling's
+/// source_values say.
 using Giver = tess::detail::RegisteredPointer<AccessorKind<const double>>;
 /// Shows where a piece takes values: a row per point that it owns, or per cell.
 using Taker = tess::detail::RegisteredPointer<AccessorKind<double>>;

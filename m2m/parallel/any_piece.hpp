@@ -1,6 +1,6 @@
 // What couplings see of a chare that holds a piece of a mesh, whatever its class is: its mesh, the
-// entry methods that receive the messages of searches and applications (messages.hpp), and the state of
-// its couplings. The work is in SourceSide and TargetSide.
+// entry methods that receive the messages of searches and applications (messages.hpp), and the
+// state of its couplings. The work is in SourceSide and TargetSide.
 //
 //   step       at the source            message         at the target
 //   ---------  -----------------------  --------------  --------------------------------------
@@ -104,8 +104,8 @@ class AnyPiece {
   void m2m_finish_search(CouplingId id);
   void m2m_greet(CouplingId id, collide::OwnerId neighbour);
 
-  // Of an application. The k-th call of every source piece belongs to the k-th round; a target piece
-  // gets a round when it is complete. A piece without sources has nothing to wait for.
+  // Of an application. The k-th call of every source piece belongs to the k-th round; a target
+  // piece gets a round when it is complete. A piece without sources has nothing to wait for.
   void m2m_give_values(CouplingId id, detail::Giver give, detail::Taker take);
   void m2m_take_if_alone(CouplingId id, detail::Taker take);
   void m2m_take(GivenValues given);

@@ -1,7 +1,7 @@
 // Where the loads of a target piece's places come from. A row that only one source piece has stays
-// there, and its load is sent. The parts of a row that several source pieces have come here: they are
-// added, and the row is applied here, to values that these pieces send. Both compute a load from the
-// same weights in the same order of ids.
+// there, and its load is sent. The parts of a row that several source pieces have come here: they
+// are added, and the row is applied here, to values that these pieces send. Both compute a load
+// from the same weights in the same order of ids.
 #pragma once
 
 #include "m2m/parallel/overlap_messages.hpp"

@@ -42,8 +42,8 @@ struct PartialRows {
   std::vector<double> weights;
 };
 
-// In an application a source piece sends GivenValues: the loads of the rows that are not shared; if the
-// kind is bounded, as many pairs (low, high); then the values of PartialRows::ids. All have
+// In an application a source piece sends GivenValues: the loads of the rows that are not shared; if
+// the kind is bounded, as many pairs (low, high); then the values of PartialRows::ids. All have
 // n_components columns.
 
 /// Values of points that the receiver holds as ghosts, within a projection.

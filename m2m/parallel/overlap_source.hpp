@@ -1,5 +1,5 @@
-// What a piece knows of a conservative coupling that it gives values to: the rows by which it computes
-// the loads of target pieces.
+// What a piece knows of a conservative coupling that it gives values to: the rows by which it
+// computes the loads of target pieces.
 #pragma once
 
 #include "m2m/parallel/overlap_messages.hpp"

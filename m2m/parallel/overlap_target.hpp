@@ -1,5 +1,5 @@
-// What a piece knows of a conservative coupling that gives it values: the search for overlaps, and the
-// projections under way. A place is what gets a value: a point that the piece owns, or a cell.
+// What a piece knows of a conservative coupling that gives it values: the search for overlaps, and
+// the projections under way. A place is what gets a value: a point that the piece owns, or a cell.
 #pragma once
 
 #include "m2m/conservative/projection.hpp"

@@ -1,5 +1,5 @@
-// Messages of the rounds of a coupling's channels. Source pieces give round after round and wait for
-// nothing, so messages of later rounds can arrive before those of the present one.
+// Messages of the rounds of a coupling's channels. Source pieces give round after round and wait
+// for nothing, so messages of later rounds can arrive before those of the present one.
 #pragma once
 
 #include <cstddef>

@@ -20,8 +20,8 @@
 
 namespace tess::m2m {
 
-/// The box around the points of a piece that can be the nearest of others: the corners of tetrahedra
-/// that it owns, or without tetrahedra all its points.
+/// The box around the points of a piece that can be the nearest of others: the corners of
+/// tetrahedra that it owns, or without tetrahedra all its points.
 [[nodiscard]] Aabb box_of_nearest(const MeshView& mesh);
 
 class SourceSide {

@@ -1,6 +1,6 @@
-// Counts of tetrahedra per cell of a Hilbert curve. A PE has tetrahedra in few of the cells, so only
-// blocks of 64 cells that hold some are kept: a reduction over many PEs moves little until it is near
-// its root.
+// Counts of tetrahedra per cell of a Hilbert curve. A PE has tetrahedra in few of the cells, so
+// only blocks of 64 cells that hold some are kept: a reduction over many PEs moves little until it
+// is near its root.
 #pragma once
 
 #include "runtime/core/algorithm.hpp"

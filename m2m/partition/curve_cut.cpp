@@ -13,7 +13,8 @@ std::uint64_t begin_of(std::uint64_t cell, int level) {
   return cell << static_cast<unsigned>(3 * (hilbert_levels - level));
 }
 
-/// Positions on the curve of level `levels`. Tetrahedra that follow each other are often in one cell.
+/// Positions on the curve of level `levels`. Tetrahedra that follow each other are often in one
+/// cell.
 class Positions {
  public:
   explicit Positions(int levels)

@@ -1,6 +1,6 @@
-// Cuts a Hilbert curve into pieces with equally many tetrahedra, from counts alone. So any number of
-// PEs can cut a mesh together, and the result does not depend on their number: the counts of all PEs
-// are added, and integers have no rounding.
+// Cuts a Hilbert curve into pieces with equally many tetrahedra, from counts alone. So any number
+// of PEs can cut a mesh together, and the result does not depend on their number: the counts of all
+// PEs are added, and integers have no rounding.
 //
 //     round 0   counts of all cells of level 4, or 5 with many parts
 //     round 1   counts of the 64 cells in each cell where a cut should be and that holds too many

@@ -1,6 +1,6 @@
-// Positions on a Hilbert curve through a cube of 2^21 cells per side (Hamilton 2006, "Compact Hilbert
-// indices", section 2). Neighbours on the curve share a face. A position at a lower level is the
-// prefix of the position at a higher one: three bits per level.
+// Positions on a Hilbert curve through a cube of 2^21 cells per side (Hamilton 2006, "Compact
+// Hilbert indices", section 2). Neighbours on the curve share a face. A position at a lower level
+// is the prefix of the position at a higher one: three bits per level.
 #pragma once
 
 #include "m2m/mesh.hpp"

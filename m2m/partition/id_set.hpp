@@ -1,5 +1,5 @@
-// A set of vertices between a least and a greatest one, as bits. The vertices that a part or a range
-// of tetrahedra uses are found without sorting, and rank() numbers them in ascending order.
+// A set of vertices between a least and a greatest one, as bits. The vertices that a part or a
+// range of tetrahedra uses are found without sorting, and rank() numbers them in ascending order.
 #pragma once
 
 #include "m2m/mesh.hpp"

@@ -27,8 +27,8 @@ enum class CornerLimit : std::uint8_t {
 }
 
 /// `elements`: the element of each tetrahedron, as global ids. `values`: tetrahedra × n_components;
-/// those of an element are alike. Returns 4 tetrahedra × n_components (Centring::corners); zeros for
-/// elements of which the part owns nothing.
+/// those of an element are alike. Returns 4 tetrahedra × n_components (Centring::corners); zeros
+/// for elements of which the part owns nothing.
 [[nodiscard]] std::vector<double> element_corners(MeshView mesh, std::span<const GlobalId> elements,
                                                   std::span<const double> values,
                                                   std::size_t n_components, CornerLimit limit);

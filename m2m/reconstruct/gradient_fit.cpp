@@ -20,8 +20,8 @@ double dot(std::span<const double> a, std::span<const double> b) {
   return sum;
 }
 
-/// One-sided Jacobi (Hestenes 1958): rotates the three columns of `a` until they are orthogonal, and
-/// the columns of `v` with them. Small singular values are as accurate as large ones.
+/// One-sided Jacobi (Hestenes 1958): rotates the three columns of `a` until they are orthogonal,
+/// and the columns of `v` with them. Small singular values are as accurate as large ones.
 void orthogonalise(std::array<std::span<double>, 3> a, std::array<Point, 3>& v) {
   for (int sweep = 0; sweep < 12; ++sweep) {
     bool rotated = false;
@@ -46,7 +46,8 @@ void orthogonalise(std::array<std::span<double>, 3> a, std::array<Point, 3>& v) 
   }
 }
 
-/// The columns of a system, orthonormalised one by one (Gram-Schmidt, twice): Q and the triangular R.
+/// The columns of a system, orthonormalised one by one (Gram-Schmidt, twice): Q and the triangular
+/// R.
 class Terms {
  public:
   /// `q` takes the columns of Q, of `n` numbers each.

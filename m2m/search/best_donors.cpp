@@ -70,8 +70,9 @@ class DonorSearch {
   std::uint64_t n_tested_ = 0;
 };
 
-/// Snaps the points that no tetrahedron holds to the nearest one within the tolerance. Those that are
-/// within rounding of one are among them: another piece of the mesh may hold one that is nearer.
+/// Snaps the points that no tetrahedron holds to the nearest one within the tolerance. Those that
+/// are within rounding of one are among them: another piece of the mesh may hold one that is
+/// nearer.
 void snap(const MeshView& mesh, const Cover& cover, std::span<const std::uint32_t> boxes,
           std::span<const Point> points, double tolerance, Best& best) {
   std::vector<std::uint32_t> outside;

@@ -20,8 +20,9 @@ struct BestDonors {
   std::uint64_t n_tested = 0;         ///< pairs of a tetrahedron and a point in its box
 };
 
-/// Searches the tetrahedra of some boxes of the mesh's cover, each box given once. A point that none
-/// of them holds snaps to the nearest within the tolerance (a length), which the cover reaches.
+/// Searches the tetrahedra of some boxes of the mesh's cover, each box given once. A point that
+/// none of them holds snaps to the nearest within the tolerance (a length), which the cover
+/// reaches.
 [[nodiscard]] BestDonors best_donors(const MeshView& mesh, const Cover& cover,
                                      std::span<const std::uint32_t> boxes,
                                      std::span<const Point> points, double tolerance = 0);

@@ -1,8 +1,8 @@
 // The boxes of up to 64 tetrahedra, which a point is compared with at once. The box around all is
 // divided into slabs along each axis, and each slab knows, one bit per box, which boxes reach into
 // it. So three words, joined by "and", name the boxes that may hold a point; these few are compared
-// exactly. Rounding to slabs is monotone: it never separates a point from a box that holds it. A few
-// points are compared with all boxes instead, since the slabs take longer to make.
+// exactly. Rounding to slabs is monotone: it never separates a point from a box that holds it. A
+// few points are compared with all boxes instead, since the slabs take longer to make.
 #pragma once
 
 #include "m2m/mesh.hpp"

@@ -1,5 +1,5 @@
-// Enumerates the pairs of a tetrahedron and a point in its box. It goes over the tetrahedra once, 64
-// at a time, and over the points that are in the box around these.
+// Enumerates the pairs of a tetrahedron and a point in its box. It goes over the tetrahedra once,
+// 64 at a time, and over the points that are in the box around these.
 #pragma once
 
 #include "m2m/mesh_view.hpp"
@@ -25,8 +25,8 @@ class NearPairs {
   [[nodiscard]] const PointGrid& grid() const { return grid_; }
 
   /// Calls found(tet, position, holds) for some tetrahedra, members of a box of a cover, and the
-  /// points that may be in their boxes; `holds` says which are. (A branch here would be expensive: it
-  /// is not predictable.) `around` contains the boxes.
+  /// points that may be in their boxes; `holds` says which are. (A branch here would be expensive:
+  /// it is not predictable.) `around` contains the boxes.
   template <class Found>
   void visit(const Aabb& around, std::span<const std::uint32_t> tets, const Found& found) {
     std::array<std::uint32_t, few> some;

@@ -1,9 +1,9 @@
-// Decides whether a mesh is the one of the last call, without a copy of it. A search keeps what it made
-// of a source that has not moved.
+// Decides whether a mesh is the one of the last call, without a copy of it. A search keeps what it
+// made of a source that has not moved.
 //
 // The first calls compare a few points only, so a mesh that moves in every step costs nothing. Once
-// these stay, the whole mesh is hashed: a change of one number is always noticed, and one of several
-// with a chance of 1 - 2^-64.
+// these stay, the whole mesh is hashed: a change of one number is always noticed, and one of
+// several with a chance of 1 - 2^-64.
 #pragma once
 
 #include "m2m/mesh_view.hpp"

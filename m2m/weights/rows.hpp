@@ -1,6 +1,6 @@
 // Sparse rows of weights, in compressed form (CSR). Everything that a transfer computes from a
-// source field is linear in the values of the field, and the weights depend on the meshes only. So a
-// search computes rows once, and every transfer applies them to any number of fields.
+// source field is linear in the values of the field, and the weights depend on the meshes only. So
+// a search computes rows once, and every transfer applies them to any number of fields.
 //
 // Columns are positions of vertices or tetrahedra in one part of a mesh. The weights of a row are
 // added in the order of its columns, so a row gives the same bits wherever it is applied.

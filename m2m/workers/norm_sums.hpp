@@ -1,7 +1,7 @@
-// What a part contributes to the norms of its mesh (field_norms.hpp). Each tetrahedron is one part's
-// own, so a sum over the mesh is the sum over own tetrahedra: of a quarter of the volume, times the sum
-// over the corners. Such a term is rounded where it is computed, and depends on no part; the terms add
-// up exactly. So the bits of the result do not depend on the partition.
+// What a part contributes to the norms of its mesh (field_norms.hpp). Each tetrahedron is one
+// part's own, so a sum over the mesh is the sum over own tetrahedra: of a quarter of the volume,
+// times the sum over the corners. Such a term is rounded where it is computed, and depends on no
+// part; the terms add up exactly. So the bits of the result do not depend on the partition.
 #pragma once
 
 #include "m2m/field.hpp"
@@ -25,7 +25,8 @@ struct NormsRequest {
       back{};  ///< of the points, one after the other, to where the truth holds
 };
 
-/// The largest of some errors. A NaN is larger than all numbers; of equal ones the first vertex counts.
+/// The largest of some errors. A NaN is larger than all numbers; of equal ones the first vertex
+/// counts.
 struct LargestError {
   double error = 0;
   GlobalId vertex = -1;  ///< -1: no vertex
@@ -39,8 +40,8 @@ struct SquareSums {
   void add(const SquareSums& other);
 };
 
-/// The sums of one component. `all` and `found` are sums over a tetrahedron's corners; where all four
-/// are found they are equal, and only `same` has them.
+/// The sums of one component. `all` and `found` are sums over a tetrahedron's corners; where all
+/// four are found they are equal, and only `same` has them.
 struct ComponentSums {
   SquareSums same, all, found;
   ExactSum value, value_squared, truth,

@@ -1,5 +1,5 @@
-// The member of a group that sets up a distributed mesh (m2m/placement.hpp). It keeps a range of the
-// points and of the tetrahedra, and builds the parts whose Workers are at home on its PE.
+// The member of a group that sets up a distributed mesh (m2m/placement.hpp). It keeps a range of
+// the points and of the tetrahedra, and builds the parts whose Workers are at home on its PE.
 #pragma once
 
 #include "m2m/checks/mesh_extent.hpp"
@@ -212,8 +212,8 @@ class Placer : public Group<Placer> {
     for (Tet& tet : tets)
       for (VertexId& v : tet) v = vertices.rank(v);
   }
-  /// A part under construction. The corners of its tetrahedra are ids in the whole mesh if there is a
-  /// halo, and otherwise positions in `asked`.
+  /// A part under construction. The corners of its tetrahedra are ids in the whole mesh if there is
+  /// a halo, and otherwise positions in `asked`.
   struct Part {
     MeshPart mesh{};
     std::vector<PartPoint> points{};  // known so far; of the vertices asked, in their order

@@ -76,8 +76,8 @@ class Worker : public Chare<Worker, Index1>, public Piece<Worker> {
   void receive_status(const GhostStatus& ghosts);
   /// Contributes the part's sums to the norms of the mesh (field_norms.hpp).
   void measure(const NormsRequest& request, Callback<NormSums> target);
-  /// Writes its tetrahedra, with values and status after share_status(), to the file STEM.K.vtu, where K
-  /// is its index. `names`: of the components, then of the status (write_pvtu.hpp).
+  /// Writes its tetrahedra, with values and status after share_status(), to the file STEM.K.vtu,
+  /// where K is its index. `names`: of the components, then of the status (write_pvtu.hpp).
   void write_part(const std::string& stem, const std::vector<std::string>& names);
   /// Sends the values of owned points to the keepers of `n_vertices` of the mesh.
   void send_values(GroupProxy<ValueKeeper> keepers, GlobalId n_vertices);

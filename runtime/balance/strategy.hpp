@@ -1,8 +1,8 @@
 // Strategies by name. A strategy is a pure function from a snapshot to an assignment: equal
 // snapshots and seeds give equal results. Elements that do not migrate stay; no move takes a PE
-// above its memory limit (memory.hpp: a block that elements share counts once per PE), and an element
-// for which there is no room stays. An element of unknown load also stays, and counts as the mean of
-// the others. Each strategy has a file in strategies/.
+// above its memory limit (memory.hpp: a block that elements share counts once per PE), and an
+// element for which there is no room stays. An element of unknown load also stays, and counts as
+// the mean of the others. Each strategy has a file in strategies/.
 #pragma once
 
 #include "runtime/balance/snapshot.hpp"

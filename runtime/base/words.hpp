@@ -25,8 +25,8 @@ namespace tess::detail {
   return line;
 }
 
-/// Reads a word that is a number from its first to its last character; false if it is none. A number
-/// that is too small for a double is 0, and one that is too large infinite.
+/// Reads a word that is a number from its first to its last character; false if it is none. A
+/// number that is too small for a double is 0, and one that is too large infinite.
 [[nodiscard]] bool to_number(std::string_view word, double& to);
 
 }  // namespace tess::detail

@@ -28,7 +28,8 @@ struct FileSum {
 
 inline constexpr std::uint32_t checkpoint_version = 4;
 
-/// Writes a file piece by piece. All of these throw Error with the name of the file and what is wrong.
+/// Writes a file piece by piece. All of these throw Error with the name of the file and what is
+/// wrong.
 class FileWriter {
  public:
   FileWriter(const std::string& folder, const std::string& name);

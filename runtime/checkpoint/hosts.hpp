@@ -1,8 +1,10 @@
-// The hosts of a run, as far as a folder of checkpoints is concerned: two PEs are on one host if they
-// see the same folder. A folder that all processes can reach counts as one host.
+// The hosts of a run, as far as a folder of checkpoints is concerned: two PEs are on one host if
+// they see the same folder of one machine. Without buddy copies the folder is one that all reach,
+// and counts as one host.
 //
-// With buddy copies the folder is local to each host, such as one in /dev/shm. A host then holds the
-// files of its own PEs, copies of files of the PEs whose buddies it has, "main" and the manifest:
+// With buddy copies the folder is local to each host, such as one in /dev/shm. A host then holds
+// the files of its own PEs, copies of files of the PEs whose buddies it has, "main" and the
+// manifest:
 //
 //     host 0 (PEs 0, 1)    pe-0  pe-1  pe-2.copy  pe-3.copy  main  manifest.json
 //     host 1 (PEs 2, 3)    pe-2  pe-3  pe-0.copy  pe-1.copy  main  manifest.json
@@ -19,7 +21,7 @@ namespace tess::detail {
 
 /// What a process sees of a folder.
 struct SeenFolder {
-  std::string host;                     ///< equal on the processes that see the same folder
+  std::string host;  ///< equal on the processes of one machine that see the same folder
   std::vector<std::uint64_t> numbers;   ///< of the checkpoints there, the latest first
   std::vector<std::uint64_t> complete;  ///< those with a manifest
 };

@@ -1,5 +1,5 @@
-// The manifest of a checkpoint, a file of JSON for programs and people, and the contents of the file
-// "main": what all PEs have to know before elements are restored.
+// The manifest of a checkpoint, a file of JSON for programs and people, and the contents of the
+// file "main": what all PEs have to know before elements are restored.
 #pragma once
 
 #include "runtime/checkpoint/files.hpp"

@@ -3,8 +3,8 @@
 // again, by messages that are not counted. Nothing is under way once the number sent in one wave is
 // the number processed in the wave before: both only grow (completion.hpp has the argument).
 //
-// Each PE freezes its periodic timers in the first wave; thaw_here() ends that. A timer that runs once is
-// reported: a checkpoint cannot save it.
+// Each PE freezes its periodic timers in the first wave; thaw_here() ends that. A timer that runs
+// once is reported: a checkpoint cannot save it.
 #pragma once
 
 #include "runtime/scheduler/pe.hpp"

@@ -101,8 +101,8 @@ struct SaveAnswer {
   }
 };
 
-/// Writes the collections; returns the sections whose root is this PE. The bytes of one element after
-/// the other leave the buffer, so a checkpoint needs little memory.
+/// Writes the collections; returns the sections whose root is this PE. The bytes of one element
+/// after the other leave the buffer, so a checkpoint needs little memory.
 std::vector<SectionId> pack_all(const std::vector<Collection*>& collections, Buffer& bytes,
                                 FileWriter& file) {
   std::vector<SectionId> sections;
@@ -224,8 +224,8 @@ void fail_for_first(const std::vector<std::string>& errors) {
     if (!error.empty()) fail(ErrorCode::environment, "the checkpoint failed: ", error);
 }
 
-/// Throws Error if the folder has a checkpoint that this run neither wrote nor found at its restart: a
-/// later restart could take one run's checkpoint for the other's.
+/// Throws Error if the folder has a checkpoint that this run neither wrote nor found at its
+/// restart: a later restart could take one run's checkpoint for the other's.
 void require_own(const std::string& folder, const Listing& listing,
                  const Runtime::OwnCheckpoints& own) {
   for (const std::uint64_t number : listing.numbers)
@@ -270,8 +270,8 @@ void add_answer(SaveAnswer& answer, Manifest& manifest, MainPart& main) {
   }
 }
 
-/// The checkpoints to remove once another one is written: all that cannot be restarted from, and those
-/// beyond `keep`, the new one counted.
+/// The checkpoints to remove once another one is written: all that cannot be restarted from, and
+/// those beyond `keep`, the new one counted.
 std::vector<std::uint64_t> to_remove(const Listing& before,
                                      const std::vector<std::uint64_t>& refused, int keep) {
   std::vector<std::uint64_t> numbers;

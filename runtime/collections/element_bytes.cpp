@@ -1,5 +1,5 @@
-// Elements as bytes, for migrations and checkpoints. The class gives only the function that writes an
-// element, and the one that reads the members.
+// Elements as bytes, for migrations and checkpoints. The class gives only the function that writes
+// an element, and the one that reads the members.
 #include "runtime/collections/collection.hpp"
 #include "runtime/core/error.hpp"
 #include "runtime/messages/read_all.hpp"

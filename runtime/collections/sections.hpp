@@ -6,8 +6,8 @@
 // reached it, and its contributions wait with it, since it may be no member. So a member that ends
 // always knows that it is one, and reports its end to the root.
 //
-// A member receives each multicast once, since the root sends it once (see SectionLists), and in the
-// order of the numbers: what arrives before its turn waits with the member.
+// A member receives each multicast once, since the root sends it once (see SectionLists), and in
+// the order of the numbers: what arrives before its turn waits with the member.
 #pragma once
 
 #include "runtime/collections/membership.hpp"

@@ -1,6 +1,6 @@
-// Checks for bugs and misuse, on in every build. TESS_CHECK prints the condition, its place and what
-// was expected, adds what the runtime does on this thread (PE, array, index, entry, epoch), and ends
-// the job.
+// Checks for bugs and misuse, on in every build. TESS_CHECK prints the condition, its place and
+// what was expected, adds what the runtime does on this thread (PE, array, index, entry, epoch),
+// and ends the job.
 #pragma once
 
 #include "runtime/core/error.hpp"

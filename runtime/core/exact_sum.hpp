@@ -1,8 +1,8 @@
-// A sum of doubles without rounding: it is the same for every order in which values, elements and PEs
-// are added. A reduction of such sums (AddExactSums) gives the same bits for any number of elements,
-// where in_order() gives them for any placement of the same elements. A fixed-point number wide
-// enough for all doubles (Kulisch): 32 bits per limb, each limb in 64 bits, so that carries can wait
-// for 2³⁰ additions. It takes 592 bytes, and an addition about 5 ns.
+// A sum of doubles without rounding: it is the same for every order in which values, elements and
+// PEs are added. A reduction of such sums (AddExactSums) gives the same bits for any number of
+// elements, where in_order() gives them for any placement of the same elements. A fixed-point
+// number wide enough for all doubles (Kulisch): 32 bits per limb, each limb in 64 bits, so that
+// carries can wait for 2³⁰ additions. It takes 592 bytes, and an addition about 5 ns.
 #pragma once
 
 #include <array>

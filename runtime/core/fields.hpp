@@ -5,8 +5,8 @@
 //
 // A member is counted by initialising it with {}, so one that is an array counts once. (Boost.PFR
 // counts each element of it, and makes g++ 12 fail on members as std::vector<std::string> v{"a"}.)
-// An aggregate with a base class, with more than 32 members, or with one that {} does not initialise
-// does not compile here: it needs a serialize().
+// An aggregate with a base class, with more than 32 members, or with one that {} does not
+// initialise does not compile here: it needs a serialize().
 #pragma once
 
 #include <boost/preprocessor/repetition/enum.hpp>

@@ -84,8 +84,8 @@ template <std::integral X>
 }
 }  // namespace detail
 
-/// The hash of an index. It is the same in every process, since homes are computed from it. Indices that
-/// are equal have equal bytes: without a -0.0, or an unordered container.
+/// The hash of an index. It is the same in every process, since homes are computed from it. Indices
+/// that are equal have equal bytes: without a -0.0, or an unordered container.
 template <class Index>
 struct IndexHash {
   using is_avalanching = void;
@@ -171,7 +171,8 @@ class BlockMap {
   std::uint64_t inverse_ = 0;  // 2^64 divided by the block size, rounded up
 };
 
-/// A dense range of one to six axes. Throws Error for a negative extent, and for more than 2^40 elements.
+/// A dense range of one to six axes. Throws Error for a negative extent, and for more than 2^40
+/// elements.
 template <class... Extent>
 [[nodiscard]] Range range(Extent... extents) {
   static_assert(sizeof...(Extent) >= 1 && sizeof...(Extent) <= 6, "a range has one to six axes");

@@ -1,7 +1,7 @@
 // Checks that a type reads what it writes: packs a value, unpacks it, packs the copy, and compares.
 // A difference is reported by its place in serialize() (or in the aggregate) and its type. Builds
-// with TESS_CHECKS=all check the arguments of every message and every element that migrates (which is
-// then rebuilt from its bytes on every machine); tests may check any type. serialize() may
+// with TESS_CHECKS=all check the arguments of every message and every element that migrates (which
+// is then rebuilt from its bytes on every machine); tests may check any type. serialize() may
 // therefore be called although nothing migrates, so it must change only its archive and the members
 // that it reads.
 #pragma once

@@ -14,11 +14,11 @@
 //     void serialize(Ar& ar, std::bitset<64>& bits);
 //     }
 //
-// Numbers, complex numbers, enums and durations are copied bit by bit: all processes of a job run the same
-// binary on the same kind of machine. Standard and Boost containers, pair, tuple, optional, variant and
-// unique_ptr work if their contents do. A raw or shared pointer does not compile, and a unique_ptr to a base
-// class that holds a derived object ends the job. Reading compares every length with the bytes that are left
-// and throws tess::Error.
+// Numbers, complex numbers, enums and durations are copied bit by bit: all processes of a job run
+// the same binary on the same kind of machine. Standard and Boost containers, pair, tuple,
+// optional, variant and unique_ptr work if their contents do. A raw or shared pointer does not
+// compile, and a unique_ptr to a base class that holds a derived object ends the job. Reading
+// compares every length with the bytes that are left and throws tess::Error.
 //
 // In a message to another process a large vector of numbers is not copied: its memory is attached
 // and sent from where it is to where it is read. The stream holds only its length, with the highest
@@ -107,8 +107,8 @@ class Writer {
   /// The bytes written, or needed.
   [[nodiscard]] std::size_t n_bytes() const { return n_bytes_; }
 
-  /// Writes their number and the numbers, which may be attached if `keeper` keeps them; null: they are
-  /// copied. Reader::numbers() reads them.
+  /// Writes their number and the numbers, which may be attached if `keeper` keeps them; null: they
+  /// are copied. Reader::numbers() reads them.
   template <class Each>
   void numbers(std::span<const Each> values, std::shared_ptr<const void> keeper);
   [[nodiscard]] std::size_t position() const { return n_bytes_; }

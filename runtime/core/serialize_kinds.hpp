@@ -69,7 +69,8 @@ template <class T>
 struct IsVector : std::false_type {};
 template <class T>
 struct IsVector<std::vector<T>> : std::bool_constant<!std::is_same_v<T, bool>> {};
-/// Its memory stays when it moves, so it can be attached; a string may hold its bytes inside itself.
+/// Its memory stays when it moves, so it can be attached; a string may hold its bytes inside
+/// itself.
 template <class T>
 concept StaysInPlace = IsVector<T>::value || std::is_same_v<T, detail::Buffer>;
 /// The type passes only its own members to an archive, never a temporary: they may be attached.

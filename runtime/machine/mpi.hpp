@@ -24,8 +24,8 @@ struct MpiOptions {
 /// True if mpirun started this process. Reads the environment, not MPI.
 [[nodiscard]] bool under_mpirun();
 
-/// The number of processes that mpirun or srun started, by the environment; 1 for a process that was
-/// started alone, and 0 if it is not known.
+/// The number of processes that mpirun or srun started, by the environment; 1 for a process that
+/// was started alone, and 0 if it is not known.
 [[nodiscard]] int processes_of_job();
 
 /// True between MPI_Init and MPI_Finalize of the program: a run then uses its processes, through a

@@ -202,7 +202,8 @@ class SimulatedMachine final : public Machine {
     return wire.overhead +
            Time(static_cast<std::int64_t>(static_cast<double>(bytes) * 1e9 / wire.copy));
   }
-  /// A message is sent, of which some bytes are copied: charges the sender, and returns when it arrives.
+  /// A message is sent, of which some bytes are copied: charges the sender, and returns when it
+  /// arrives.
   std::int64_t departs(const Sending& sending, std::size_t bytes, std::size_t copied,
                        Traffic traffic, const Wire& wire) {
     if (sending.from != sending.to) charge(sending.from, cpu_time(wire, copied));
@@ -304,7 +305,8 @@ void SimulatedMachine::run_step(Program& program, PeId pe) {
     return;
   }
   clock.now += worked;
-  // Measured and charged time: it begins with one message, and grows while steps are full and short.
+  // Measured and charged time: it begins with one message, and grows while steps are full and
+  // short.
   const std::int64_t took = clock.now - began;
   if (took > 2 * nanoseconds_per_step) {
     clock.most = static_cast<std::size_t>(std::clamp<std::int64_t>(

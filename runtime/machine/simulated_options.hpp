@@ -2,10 +2,10 @@
 //
 //     --sim pes=8,latency=2us,cost=100ns       --sim here.sim,pes=8     a file, and parts after it
 //
-// A message to another PE takes the sender `overhead`, is under way for latency + bytes / bandwidth,
-// and takes the receiver `overhead` again. Between processes a transfer of packed messages does the
-// same with parameters of its own, and its bytes are copied by both; those of a large vector, which
-// is received in place, are not.
+// A message to another PE takes the sender `overhead`, is under way for latency + bytes /
+// bandwidth, and takes the receiver `overhead` again. Between processes a transfer of packed
+// messages does the same with parameters of its own, and its bytes are copied by both; those of a
+// large vector, which is received in place, are not.
 #pragma once
 
 #include "runtime/machine/machine.hpp"

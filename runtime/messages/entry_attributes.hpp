@@ -1,5 +1,5 @@
-// Priorities, and the attributes of entry methods. A chare lists them in its class, behind the entry
-// methods that it names:
+// Priorities, and the attributes of entry methods. A chare lists them in its class, behind the
+// entry methods that it names:
 //
 //     class Cell : public tess::Chare<Cell, tess::Index2> {
 //      public:
@@ -32,8 +32,9 @@ inline constexpr Priority expedited{std::numeric_limits<std::int64_t>::min()};
 struct InlineWhenLocal {};
 struct CreateHere {};
 struct CreateHome {};
-/// A message to an element of this PE runs inside send(), if an entry method sends it and no code of
-/// the element runs or waits. Otherwise, and in a deep chain of such calls, it is queued as usual.
+/// A message to an element of this PE runs inside send(), if an entry method sends it and no code
+/// of the element runs or waits. Otherwise, and in a deep chain of such calls, it is queued as
+/// usual.
 inline constexpr InlineWhenLocal inline_when_local{};
 /// send() acts as send_or_create_here().
 inline constexpr CreateHere create_here{};

@@ -37,7 +37,8 @@ struct HeatCells {
   Range range;
   /// Of the HeatGrid of the range; only those with elements here.
   std::vector<std::uint32_t> cells;
-  /// For each cell. Load: the part of the PE's time since the window began. PE: the number of elements.
+  /// For each cell. Load: the part of the PE's time since the window began. PE: the number of
+  /// elements.
   std::vector<float> values;
 };
 

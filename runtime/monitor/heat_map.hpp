@@ -36,7 +36,8 @@ class HeatMap {
   std::optional<HeatGrid> grid_;
   bool changed_ = false;
   std::uint64_t n_periods_ = 0;
-  // Load: sums over periods in which old ones fade; of each PE the last period in which it reported.
+  // Load: sums over periods in which old ones fade; of each PE the last period in which it
+  // reported.
   std::vector<double> load_;  // by cell
   double weight_ = 0;
   std::vector<std::uint64_t> reported_in_;

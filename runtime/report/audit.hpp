@@ -1,7 +1,7 @@
 // The audit of messages between PEs (--audit): each PE counts, by the other PE and the message's
 // action, what it sends and what arrives. Each hop of a message counts by itself, so a message that
-// is forwarded is counted on each of its hops. The k-th message of one action from one PE to another
-// carries the number k. Both ends add up the count, the numbers, and a hash of the numbers:
+// is forwarded is counted on each of its hops. The k-th message of one action from one PE to
+// another carries the number k. Both ends add up the count, the numbers, and a hash of the numbers:
 //
 //     sent      n   Σ k   Σ hash(k)     equal: each arrived once
 //     received  n   Σ k   Σ hash(k)     one missing: the difference of the sums is its number

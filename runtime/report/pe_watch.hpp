@@ -28,7 +28,8 @@ class PeWatch {
 
   /// An entry method of an element begins, or code of the main program (null).
   void enters(const Element* element, const Action* action) {
-    // relaxed: a number for the watcher, which reads nothing else by it; only this thread writes it.
+    // relaxed: a number for the watcher, which reads nothing else by it; only this thread writes
+    // it.
     n_entered_.store(n_entered_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
     if (depth_++ != 0) return;
     action_.store(action, std::memory_order_relaxed);  // ordered by element_; it is static
@@ -53,8 +54,8 @@ class PeWatch {
 
   // On one thread at a time.
 
-  /// Calls visit(element, action, seconds) if an entry method runs; the element is null for the main
-  /// program. The PE is held until `visit` returns.
+  /// Calls visit(element, action, seconds) if an entry method runs; the element is null for the
+  /// main program. The PE is held until `visit` returns.
   template <class Visit>
   void look(const Visit& visit) {
     looked_at_.store(true);

@@ -1,5 +1,5 @@
-// What a suspended coroutine waits for, as awaitables say it. All programs include this header, so it
-// is small; waiting.hpp has the rest of the reports.
+// What a suspended coroutine waits for, as awaitables say it. All programs include this header, so
+// it is small; waiting.hpp has the rest of the reports.
 #pragma once
 
 #include <string>

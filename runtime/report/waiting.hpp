@@ -1,5 +1,6 @@
-// What waits in a run: the lines and the facts from which the reports of a deadlock, of a signal and
-// of --hang-report are made. Each PE fills a Waits; those of several PEs are merged and printed.
+// What waits in a run: the lines and the facts from which the reports of a deadlock, of a signal
+// and of --hang-report are made. Each PE fills a Waits; those of several PEs are merged and
+// printed.
 //
 //     3 wait:
 //       cycle of replies: Cell[3] waits for Cell[5].depth, Cell[5] waits for Cell[3].depth

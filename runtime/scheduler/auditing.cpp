@@ -33,8 +33,8 @@ std::vector<AuditRow> Pe::audit_rows() const {
   return audit_ ? audit_->audit.rows() : std::vector<AuditRow>();
 }
 
-/// A message that no epoch counts may be under way when the others have arrived: it is left out. The
-/// number travels in the field of the trace.
+/// A message that no epoch counts may be under way when the others have arrived: it is left out.
+/// The number travels in the field of the trace.
 bool Pe::audit_departure(PeId to, Envelope* message) {
   if (!message->counted || (to == id_ && !intercepts_)) return true;
   message->sender = id_;

@@ -75,7 +75,8 @@ class Meter {
   [[nodiscard]] bool weighs_messages() const { return scope_.record != nullptr; }
   /// The running element sends a payload to another element.
   void sent(const ElementKey& to, std::uint64_t bytes);
-  /// The record ends or leaves this PE, with a balancer or without: after a restart it may have none.
+  /// The record ends or leaves this PE, with a balancer or without: after a restart it may have
+  /// none.
   void forget(const LoadRecord* record) {
     if (scope_.record == record) scope_.record = nullptr;
     if (longest_.record == record) longest_ = {};
@@ -86,8 +87,8 @@ class Meter {
   /// From now on the listener is called for each scope; null: none is. Not owned.
   void set_listener(ScopeListener* listener) { listener_ = listener; }
 
-  /// Ticks of the elements of all balanced arrays here; each balancer adds the sum of its own, which
-  /// it counts up until it removes it.
+  /// Ticks of the elements of all balanced arrays here; each balancer adds the sum of its own,
+  /// which it counts up until it removes it.
   [[nodiscard]] std::uint64_t in_balanced() const;
   void add_balanced(const std::uint64_t* sum) { balanced_.push_back(sum); }
   void remove_balanced(const std::uint64_t* sum);

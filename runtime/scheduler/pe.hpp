@@ -177,7 +177,8 @@ class Pe {
   [[nodiscard]] Ending take_ending(CollectionId id);
   [[nodiscard]] CollectionId new_collection_id(LateMessages late = LateMessages::counted);
   [[nodiscard]] std::vector<HostedCollection*> collections() const;
-  /// For checkpoints: the ids that this PE has given, and, after a restart, ids of ended collections.
+  /// For checkpoints: the ids that this PE has given, and, after a restart, ids of ended
+  /// collections.
   [[nodiscard]] CollectionNumbers& collection_numbers() { return collection_numbers_; }
   void had_ended(CollectionId id) { ended_.add(id); }
 
@@ -235,16 +236,16 @@ class Pe {
   void leave_future(std::uint64_t id);
   /// Null if the future was destroyed.
   [[nodiscard]] void* find_future(std::uint64_t id) const;
-  /// For restarts: numbers of futures made from now on begin behind those of the saved run, so that a
-  /// callback that was saved finds none of them.
+  /// For restarts: numbers of futures made from now on begin behind those of the saved run, so that
+  /// a callback that was saved finds none of them.
   [[nodiscard]] std::uint32_t places_of_futures() const;
   void begin_futures_behind(std::uint32_t places);
   /// Ends with an error that says why it was destroyed, or never was there.
   [[nodiscard]] void* require_future(std::uint64_t id) const;
 
   /// Keeps an exception that no user code may catch: of a coroutine after it has waited, or of a
-  /// message that cannot be packed, whose epoch would wait for ever. It is rethrown at the end of the
-  /// message that runs.
+  /// message that cannot be packed, whose epoch would wait for ever. It is rethrown at the end of
+  /// the message that runs.
   void keep_exception(std::exception_ptr error);
   /// An exception leaves the code of an element: records the place for the report.
   void note_place();

@@ -1,5 +1,5 @@
-// What a run reports while it goes on or when it cannot: what a PE runs, the audit, and the watch of
-// a simulated machine, which uses virtual time.
+// What a run reports while it goes on or when it cannot: what a PE runs, the audit, and the watch
+// of a simulated machine, which uses virtual time.
 #include "runtime/core/check.hpp"
 #include "runtime/report/pe_watch.hpp"
 #include "runtime/scheduler/pe_action.hpp"

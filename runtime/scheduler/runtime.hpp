@@ -62,7 +62,8 @@ class Runtime final : public Program {
   /// Called before run(). The service lives until the run has ended.
   void serve(ProcessService& service) { service_ = &service; }
   [[nodiscard]] ProcessService& service() { return *service_; }
-  /// Called before run(): the PEs measure their idle time, and the monitor is called for what happens.
+  /// Called before run(): the PEs measure their idle time, and the monitor is called for what
+  /// happens.
   void watch(ProcessMonitor& monitor);
   /// Null if the run is not monitored.
   [[nodiscard]] ProcessMonitor* monitor() { return monitor_; }
@@ -95,8 +96,8 @@ class Runtime final : public Program {
   [[nodiscard]] std::optional<Running> watched(PeId id);
   /// The same text, or without --hang-report "it runs Cell::step".
   [[nodiscard]] std::string running_text(PeId id);
-  /// What an audit found so far, as lines for a report; empty without one. `rows` and `answered` are
-  /// of the PEs that have reported.
+  /// What an audit found so far, as lines for a report; empty without one. `rows` and `answered`
+  /// are of the PEs that have reported.
   [[nodiscard]] std::string audit_text(const std::vector<AuditRow>& rows,
                                        const std::function<bool(PeId)>& answered) const;
   /// Describes what a PE runs: "Block[3], Block::step on PE 2".

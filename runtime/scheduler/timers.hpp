@@ -1,5 +1,6 @@
-// The timers of one PE. A timer that runs once counts as a message of its epoch: it is sent when the
-// timer is set and processed when it has run or is cancelled, so its epoch and the run wait for it.
+// The timers of one PE. A timer that runs once counts as a message of its epoch: it is sent when
+// the timer is set and processed when it has run or is cancelled, so its epoch and the run wait for
+// it.
 //
 // The timers wait here, each with the message that runs it once it is due. Only an alarm for the
 // earliest of them is with the machine, and so a timer that is cancelled leaves nothing behind:

@@ -1,5 +1,5 @@
-// A message to all PEs that involves no chare. Each PE passes it on along the tree that begins at the
-// sender, so that no PE sends more than a few.
+// A message to all PEs that involves no chare. Each PE passes it on along the tree that begins at
+// the sender, so that no PE sends more than a few.
 #pragma once
 
 #include "runtime/base/spanning_tree.hpp"
@@ -29,8 +29,8 @@ void to_all_arrives(Pe& pe, ToAll<typename PeAction<Handler>::Payload>&& m) {
   Handler(pe, std::move(m.payload));
 }
 
-/// Passes a payload to the handler on all PEs; here at once. Each counts as sent in `payload.epoch`,
-/// and the handler counts it as processed.
+/// Passes a payload to the handler on all PEs; here at once. Each counts as sent in
+/// `payload.epoch`, and the handler counts it as processed.
 template <auto Handler>
 void send_to_all(Pe& pe, typename PeAction<Handler>::Payload payload) {
   pe.completion().sent(payload.epoch);

@@ -1,6 +1,6 @@
-// The census of one process: each of its PEs answers once with what waits on it. It is done once all
-// have answered, or after a time limit; then it also names the PEs that have not. The service guards
-// it with its mutex.
+// The census of one process: each of its PEs answers once with what waits on it. It is done once
+// all have answered, or after a time limit; then it also names the PEs that have not. The service
+// guards it with its mutex.
 #pragma once
 
 #include "runtime/machine/machine.hpp"

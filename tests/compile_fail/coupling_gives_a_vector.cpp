@@ -1,4 +1,5 @@
-// expect: a coupling gives values that the chare keeps: return std::span<const double>, not a vector, which would end before it is read
+// expect: a coupling gives values that the chare keeps: return std::span<const double>, not a
+// vector, which would end before it is read
 #include "m2m/coupling.hpp"
 
 class Fluid : public tess::Chare<Fluid>, public tess::m2m::Piece<Fluid> {

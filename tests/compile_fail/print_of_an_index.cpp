@@ -1,4 +1,5 @@
-// expect: print() takes numbers, strings and what has an operator<< for std::ostream; it takes an index as index_text(index())
+// expect: print() takes numbers, strings and what has an operator<< for std::ostream; it takes an
+// index as index_text(index())
 #include "runtime/runtime.hpp"
 
 void misuse() {

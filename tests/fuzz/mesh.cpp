@@ -1,6 +1,6 @@
-// libFuzzer over the readers of meshes, fields and weights: any bytes are a file; its first bytes say
-// which. A reader gives a mesh that passes validate() and fields of its length, or an Error of one
-// line that names the file. libexodusII keeps what it read of files that it refuses.
+// libFuzzer over the readers of meshes, fields and weights: any bytes are a file; its first bytes
+// say which. A reader gives a mesh that passes validate() and fields of its length, or an Error of
+// one line that names the file. libexodusII keeps what it read of files that it refuses.
 //
 //     mkdir -p build/corpus/mesh
 //     build/fuzz/bin/fuzz_mesh -max_total_time=600 -detect_leaks=0 -dict=tests/fuzz/mesh.dict build/corpus/mesh

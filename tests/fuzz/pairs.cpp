@@ -1,5 +1,6 @@
-// libFuzzer over the serial face: any bytes are a set of boxes or triangles and options. The pairs are
-// those of brute force; objects that are not finite, or inside out, are an Error that names the first.
+// libFuzzer over the serial face: any bytes are a set of boxes or triangles and options. The pairs
+// are those of brute force; objects that are not finite, or inside out, are an Error that names the
+// first.
 //
 //     cmake/setup.sh --fuzz
 //     cmake --preset clang -B build/fuzz -DTESS_FUZZ=ON -DTESS_SANITIZE=address,undefined,fuzzer-no-link

@@ -1,5 +1,5 @@
-// libFuzzer over the readers of surfaces: any bytes are a file, the first of them its format. A reader
-// gives triangles of vertices that exist and are finite, or an Error that names the file.
+// libFuzzer over the readers of surfaces: any bytes are a file, the first of them its format. A
+// reader gives triangles of vertices that exist and are finite, or an Error that names the file.
 //
 //     mkdir -p build/corpus/surface
 //     build/fuzz/bin/fuzz_surface -max_total_time=600 -dict=tests/fuzz/surface.dict build/corpus/surface

@@ -61,8 +61,8 @@ struct Patch : Chare<Patch>, MeshPiece<Patch> {
   std::uint64_t n_loaded = 0;
 };
 
-/// A field goes there, at once with its opposite, and back. What comes back goes over ghosts that took
-/// it on the way. The second search makes the voxels again.
+/// A field goes there, at once with its opposite, and back. What comes back goes over ghosts that
+/// took it on the way. The second search makes the voxels again.
 Task there_and_back(Counts& there_found, Counts& back_found) {
   ArrayProxy<Patch> large, small;
   co_await epoch([&] {
@@ -135,7 +135,8 @@ struct Wave : Chare<Wave<targets>>, MeshPiece<Wave<targets>> {
 using Owner = Wave<Targets::owned>;
 using WithGhosts = Wave<Targets::with_ghosts>;
 
-/// One transfer of C's field by a kind, between meshes in so many pieces, with the halos of the kind.
+/// One transfer of C's field by a kind, between meshes in so many pieces, with the halos of the
+/// kind.
 template <class C>
 Task transfer_in(std::int32_t n_source, std::int32_t n_target, TransferKind kind, ValueOf& found) {
   ArrayProxy<C> source, target;

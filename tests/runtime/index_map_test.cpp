@@ -1,5 +1,5 @@
-// Arrays whose elements a map places: where they are created, what is created on demand, and restarts
-// on another number of PEs. (misuse.cpp has a map that names a PE that does not exist.)
+// Arrays whose elements a map places: where they are created, what is created on demand, and
+// restarts on another number of PEs. (misuse.cpp has a map that names a PE that does not exist.)
 #include "runtime/index_map.hpp"
 
 #include "runtime/checkpoint.hpp"

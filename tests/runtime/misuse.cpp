@@ -385,8 +385,8 @@ void send_to_the_past() {
       .send<&Block::nothing>();
 }
 
-/// Rounds of which the next begins before the result is known. Element 0 contributes after a further
-/// message; element 1 is created meanwhile and contributes at once.
+/// Rounds of which the next begins before the result is known. Element 0 contributes after a
+/// further message; element 1 is created meanwhile and contributes at once.
 class Overlap : public tess::Chare<Overlap> {
  public:
   struct Round {

@@ -1,4 +1,5 @@
-// The samples of runtime/ask.hpp and runtime/when.hpp, compiled and run. tests/samples/check.py compares the text.
+// The samples of runtime/ask.hpp and runtime/when.hpp, compiled and run. tests/samples/check.py
+// compares the text.
 #include "runtime/machine/simulated.hpp"
 #include "runtime/runtime.hpp"
 #include "runtime/when.hpp"

@@ -1,4 +1,5 @@
-// The sample of runtime/testing.hpp and runtime/README.md, compiled and run. tests/samples/check.py compares the text.
+// The sample of runtime/testing.hpp and runtime/README.md, compiled and run. tests/samples/check.py
+// compares the text.
 #include "runtime/testing.hpp"
 
 #include "runtime/runtime.hpp"

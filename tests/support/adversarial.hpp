@@ -8,7 +8,8 @@
 
 namespace tess::test {
 
-/// Delivers messages in an adversarial order and migrates chares by force, both drawn from the seed.
+/// Delivers messages in an adversarial order and migrates chares by force, both drawn from the
+/// seed.
 [[nodiscard]] inline Setup adversarial(int n_pes, std::uint64_t seed) {
   SimulatedOptions options;
   options.n_pes = n_pes;

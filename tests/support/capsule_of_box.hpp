@@ -1,5 +1,5 @@
-// A capsule around a box: objects that are boxes meet only where their capsules do, so with capsules a
-// collider finds the same pairs.
+// A capsule around a box: objects that are boxes meet only where their capsules do, so with
+// capsules a collider finds the same pairs.
 #pragma once
 
 #include "collide/capsule.hpp"

@@ -6,8 +6,8 @@
 
 namespace tess::test {
 
-/// All of them in release; with the address sanitizer, which takes ten times as long, a quarter; with
-/// the thread sanitizer two, because that machine is one thread.
+/// All of them in release; with the address sanitizer, which takes ten times as long, a quarter;
+/// with the thread sanitizer two, because that machine is one thread.
 [[nodiscard]] constexpr std::uint64_t n_seeds(std::uint64_t in_release) {
 #if defined(__SANITIZE_THREAD__)
   return std::min<std::uint64_t>(in_release, 2);

@@ -41,8 +41,8 @@ inline Reports in_order(Reports list) {
   return list;
 }
 
-/// Each of the two owners of a pair receives it, once if they are the same; with `only` the owner of the
-/// object of this model.
+/// Each of the two owners of a pair receives it, once if they are the same; with `only` the owner
+/// of the object of this model.
 inline Reports all_reports(std::span<const collide::Item> all, collide::PairRules rules,
                            std::optional<collide::ModelId> only) {
   Reports out;

@@ -1,6 +1,6 @@
-// bench --calibrate FILE: finds the parameters with which the simulated machine takes as long as this
-// one. A run on two PEs of a process finds those within a process, a run on two processes those
-// between them; each keeps the lines of the other in the file.
+// bench --calibrate FILE: finds the parameters with which the simulated machine takes as long as
+// this one. A run on two PEs of a process finds those within a process, a run on two processes
+// those between them; each keeps the lines of the other in the file.
 #pragma once
 
 #include "apps/bench/bench.hpp"

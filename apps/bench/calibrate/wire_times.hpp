@@ -1,5 +1,5 @@
-// What messages between the two PEs of a machine take, real or simulated: the figures from which the
-// parameters of a simulated machine are found.
+// What messages between the two PEs of a machine take, real or simulated: the figures from which
+// the parameters of a simulated machine are found.
 #pragma once
 
 #include "runtime/task.hpp"

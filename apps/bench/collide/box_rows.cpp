@@ -56,8 +56,8 @@ std::uint64_t n_missing(const Pairs& of, const Pairs& in) {
   return n;
 }
 
-/// Merges the small blocks that a method freed: otherwise the first large allocation of the next one
-/// does it and pays for it. After FCL, which frees a million nodes, that is 85 ns per object.
+/// Merges the small blocks that a method freed: otherwise the first large allocation of the next
+/// one does it and pays for it. After FCL, which frees a million nodes, that is 85 ns per object.
 void tidy_heap() {
   void* volatile large = std::malloc(std::size_t{1} << 16);
   std::free(large);
@@ -149,8 +149,8 @@ class BoxCase {
     if (kind == "fcl") count_lost(*fcl_centred_pairs(problem_));
   }
 
-  /// What Embree passes on beyond the pairs: boxes that overlap by their rounding, and the rest of a
-  /// leaf.
+  /// What Embree passes on beyond the pairs: boxes that overlap by their rounding, and the rest of
+  /// a leaf.
   void count_candidates(Method& embree) {
     std::uint64_t rounded = 0, more = 0;
     auto at = expected_.begin();
@@ -288,8 +288,9 @@ void growth_rows(Output& output) {
     for (int log = 10; log <= (output.options().quick ? 12 : 22); ++log) {
       Case grown = of;
       grown.scene = fmt::format("{}:{}", of.scene.substr(0, of.scene.find(':')), 1 << log);
-      // Small scenes are searched in turns, each with another seed: of one small scene the processor
-      // learns every branch, which makes 1 024 objects a third faster than they are in a program.
+      // Small scenes are searched in turns, each with another seed: of one small scene the
+      // processor learns every branch, which makes 1 024 objects a third faster than they are in a
+      // program.
       const int n_scenes = std::max(1, (1 << 17) >> log);
       std::vector<Problem> problems;
       for (int i = 0; i < n_scenes; ++i)

@@ -51,8 +51,8 @@ struct MethodKind {
 [[nodiscard]] std::unique_ptr<Method> our_doubles(const Problem& problem);
 /// On Problem::floats or float_triangles; its pairs are those of the rounded objects.
 [[nodiscard]] std::unique_ptr<Method> our_floats(const Problem& problem);
-/// Boxes as user geometry, doubles rounded outward to floats; closed boxes only. Embree passes on all
-/// pairs of two leaves, so the callback tests the boxes of doubles.
+/// Boxes as user geometry, doubles rounded outward to floats; closed boxes only. Embree passes on
+/// all pairs of two leaves, so the callback tests the boxes of doubles.
 [[nodiscard]] std::unique_ptr<Method> embree_pairs(const Problem& problem);
 /// The box that Embree is given.
 [[nodiscard]] FloatBox rounded_outward(const Aabb& box);

@@ -1,7 +1,7 @@
 // Messages to random elements: 1 000 elements of a dense array; each starts a chain of 5 000 hops.
 // The run is ended by a message of the last hop of each chain to a group's member, or by an epoch.
-// The same with priorities, with calls that run at once where the element is local, and with awaited
-// replies.
+// The same with priorities, with calls that run at once where the element is local, and with
+// awaited replies.
 #include "apps/bench/shapes/shapes.hpp"
 #include "runtime/runtime.hpp"
 

@@ -10,9 +10,9 @@
 
 namespace collide_scene {
 
-/// n L shapes, nested, standing on their corners, in planes that are not parallel to an axis. Each is
-/// a model of four triangles. The boxes of any two of the 4 n triangles overlap, closed; no triangles
-/// of different models touch.
+/// n L shapes, nested, standing on their corners, in planes that are not parallel to an axis. Each
+/// is a model of four triangles. The boxes of any two of the 4 n triangles overlap, closed; no
+/// triangles of different models touch.
 [[nodiscard]] Scene nested_ls(std::uint64_t n);
 
 /// n thin triangles, ⌈n/2⌉ along x and the others along y, each its own model. Each along x crosses

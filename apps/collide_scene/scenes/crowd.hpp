@@ -20,8 +20,8 @@ class Crowd {
   Crowd(std::uint64_t n_bodies, std::uint64_t seed);
 
   [[nodiscard]] std::uint64_t n_bodies() const noexcept { return bodies_.size(); }
-  /// The triangles of a body at a step, which may be fractional: the same mesh each time, moved as a
-  /// rigid body. `out` has triangles_per_body places.
+  /// The triangles of a body at a step, which may be fractional: the same mesh each time, moved as
+  /// a rigid body. `out` has triangles_per_body places.
   void triangles(std::uint64_t body, double step, std::span<tess::collide::Triangle> out) const;
 
  private:

@@ -1,5 +1,5 @@
-// A closed curved surface of many small triangles without a file, in the place of the scanned dragon
-// of the paper (Lawlor and Kalé 2002, section 4.2): a bumpy tube around a trefoil knot.
+// A closed curved surface of many small triangles without a file, in the place of the scanned
+// dragon of the paper (Lawlor and Kalé 2002, section 4.2): a bumpy tube around a trefoil knot.
 #pragma once
 
 #include "apps/collide_scene/scenes/scene.hpp"

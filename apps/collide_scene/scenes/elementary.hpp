@@ -1,6 +1,6 @@
 // Sine, cosine and powers that have the same bits on every machine. The functions of the C library
-// do not: its versions differ in the last bit, and a last bit decides whether two boxes touch. These
-// use only IEEE additions, multiplications and exact scalings.
+// do not: its versions differ in the last bit, and a last bit decides whether two boxes touch.
+// These use only IEEE additions, multiplications and exact scalings.
 #pragma once
 
 namespace collide_scene {

@@ -1,5 +1,5 @@
-// Triangles in random directions at random places of the unit cube. Their sizes shrink with N^(-1/3), so
-// that a triangle has as many pairs whatever N is; those that follow are of 100 000.
+// Triangles in random directions at random places of the unit cube. Their sizes shrink with
+// N^(-1/3), so that a triangle has as many pairs whatever N is; those that follow are of 100 000.
 #pragma once
 
 #include "apps/collide_scene/scenes/scene.hpp"

@@ -25,8 +25,8 @@ struct Scene {
   /// One number per object, in the order of the objects; the objects of a model are adjacent. Empty
   /// if pairs are not told apart by models.
   std::vector<std::uint32_t> models;
-  /// Moves the objects of a scene of this kind to where they are at a step, which may be fractional;
-  /// step 0 is how the scene was made. Empty if the scene does not move.
+  /// Moves the objects of a scene of this kind to where they are at a step, which may be
+  /// fractional; step 0 is how the scene was made. Empty if the scene does not move.
   std::function<void(double step, Scene& scene)> move;
 
   [[nodiscard]] std::size_t n_objects() const noexcept { return triangles.size() + boxes.size(); }

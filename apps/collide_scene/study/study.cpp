@@ -10,8 +10,8 @@
 namespace collide_scene {
 namespace {
 
-/// The edge of voxels of which there are about as many as objects, which is positive: the base of the
-/// ladder where the library uses no grid.
+/// The edge of voxels of which there are about as many as objects, which is positive: the base of
+/// the ladder where the library uses no grid.
 double edge_per_object(const Scene& scene) {
   auto all = tess::collide::no_box<double, 3>();
   for (const auto& box : boxes_of(scene)) all = merged(all, box);

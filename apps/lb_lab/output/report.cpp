@@ -132,7 +132,8 @@ std::string explain_text(const Settings& s, std::int32_t n_pes) {
 
 namespace {
 
-/// A replay takes all files of a folder: those of a run before, on more PEs or in another format, go.
+/// A replay takes all files of a folder: those of a run before, on more PEs or in another format,
+/// go.
 void remove_snapshots(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> old;
   for (const auto& entry : std::filesystem::directory_iterator(folder))

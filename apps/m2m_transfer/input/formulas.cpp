@@ -15,7 +15,8 @@ std::optional<double> largest_second_derivative(const std::string& field, const 
   // exp(-|r|²) has its largest second derivative, -2, at r = 0; r = 4/side times the position.
   if (field == "gaussian") return 2 * 16 / (side * side);
   // The product of three sines is the mean of four plane waves with the wave vectors k (1, ±1, ±1).
-  // Along a unit vector v their squares sum to 4 k² |v|²; the corners of a cube of extrema reach k².
+  // Along a unit vector v their squares sum to 4 k² |v|²; the corners of a cube of extrema reach
+  // k².
   if (field == "sin") return std::pow(2 * std::numbers::pi / side, 2);
   return std::nullopt;
 }

@@ -28,8 +28,8 @@ struct StepMotion {
                                       const std::vector<std::string>& meshes,
                                       std::size_t default_mesh);
 
-/// What moves points back, one after the other: the opposites of motions in the order in which they were
-/// made, from the last one on.
+/// What moves points back, one after the other: the opposites of motions in the order in which they
+/// were made, from the last one on.
 [[nodiscard]] std::vector<RigidMotion> opposite(const std::vector<RigidMotion>& motions);
 
 }  // namespace m2m_transfer

@@ -39,8 +39,9 @@ struct Request {
   std::vector<std::string> moves{};
 };
 
-/// A mesh of a run. PE 0 holds it only if it has to: if Zoltan cuts it, or the file cannot be read in
-/// ranges; and, after a run whose result is written or drawn, if a pair wrote it (bring_targets()).
+/// A mesh of a run. PE 0 holds it only if it has to: if Zoltan cuts it, or the file cannot be read
+/// in ranges; and, after a run whose result is written or drawn, if a pair wrote it
+/// (bring_targets()).
 struct RunMesh {
   std::string name{};
   MeshSurvey survey{};
@@ -49,8 +50,8 @@ struct RunMesh {
   /// (Problem::collects) a mesh that a pair writes has these, and a field "status".
   std::vector<Field> fields{};
   std::vector<StepMotion> motions{};
-  /// After a run that collects its results: of the points from where they were at the start, and from
-  /// there to where the formulas hold.
+  /// After a run that collects its results: of the points from where they were at the start, and
+  /// from there to where the formulas hold.
   std::vector<RigidMotion> made{}, back{};
 };
 

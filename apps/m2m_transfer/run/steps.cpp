@@ -124,8 +124,8 @@ Task GraphRun::audit_source(std::size_t pair) {
   co_await measure_norms(meshes_[source], std::move(request), &audits_[pair].source);
 }
 
-/// Compares with the formulas at the places where the target is now. The formulas follow the mesh that
-/// the values were sampled on.
+/// Compares with the formulas at the places where the target is now. The formulas follow the mesh
+/// that the values were sampled on.
 Task GraphRun::audit_target(std::size_t pair) {
   const std::size_t target = problem_.pairs[pair].target;
   const RunMesh& mesh = problem_.meshes[target];

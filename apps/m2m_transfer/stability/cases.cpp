@@ -54,7 +54,8 @@ std::vector<bool> used_points(const TetMesh& mesh) {
   return used;
 }
 
-/// The first of the vertices at the same place, per vertex: two sides of a crack have their own ones.
+/// The first of the vertices at the same place, per vertex: two sides of a crack have their own
+/// ones.
 std::vector<std::size_t> first_at_place(const TetMesh& mesh) {
   std::map<Point, std::size_t> first;
   std::vector<std::size_t> out;
@@ -63,8 +64,9 @@ std::vector<std::size_t> first_at_place(const TetMesh& mesh) {
   return out;
 }
 
-/// Values without structure, so that a wrong vertex or a rounded weight shows. Vertices at one place
-/// have one value. The truth is not known at vertices that no tetrahedron uses: they may lie anywhere.
+/// Values without structure, so that a wrong vertex or a rounded weight shows. Vertices at one
+/// place have one value. The truth is not known at vertices that no tetrahedron uses: they may lie
+/// anywhere.
 Case onto_itself(const std::string& name, const TetMesh& mesh) {
   Case out{.name = name, .source = mesh, .target = mesh};
   for (const std::size_t v : first_at_place(mesh))

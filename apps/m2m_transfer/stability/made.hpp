@@ -15,8 +15,8 @@ namespace m2m_transfer::stability {
 /// Every coordinate is multiplied by `scale`, then moved by `offset`.
 [[nodiscard]] TetMesh changed(TetMesh mesh, double scale, double offset);
 
-/// Every tetrahedron becomes four, with a new vertex at this part of its height above a face: one of
-/// the four is a sliver.
+/// Every tetrahedron becomes four, with a new vertex at this part of its height above a face: one
+/// of the four is a sliver.
 [[nodiscard]] TetMesh with_slivers(const TetMesh& mesh, double height);
 
 /// A coarse box beside a fine one: the vertices of the fine one lie on faces and edges of the

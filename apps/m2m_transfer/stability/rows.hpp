@@ -45,9 +45,9 @@ Task answer_of(const Case& c, std::int32_t n_parts, const Ways& ways, Answer& an
 /// The reason why a mesh of the case is refused; empty if it is valid.
 [[nodiscard]] std::string refusal(const Case& c);
 
-/// Judges the first answer, and compares the others with it. `before`: the answer of the case before,
-/// for cases with an order; may be null. A point outside whose value is not that of the policy has an
-/// infinite error.
+/// Judges the first answer, and compares the others with it. `before`: the answer of the case
+/// before, for cases with an order; may be null. A point outside whose value is not that of the
+/// policy has an infinite error.
 [[nodiscard]] Row judge(const Case& c, const std::vector<Answer>& answers, const Answer* before,
                         const OutsidePolicy& policy = Keep{});
 

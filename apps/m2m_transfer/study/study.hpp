@@ -29,8 +29,8 @@ struct Study {
 /// if the ladder has a mistake.
 [[nodiscard]] std::vector<std::string> expand(const std::string& name);
 
-/// The transfers of a study: every pair of meshes of every kind under every policy. Throws Error if the ladders
-/// have different lengths, a policy is unknown, or a file does not exist.
+/// The transfers of a study: every pair of meshes of every kind under every policy. Throws Error if
+/// the ladders have different lengths, a policy is unknown, or a file does not exist.
 [[nodiscard]] std::vector<Request> plan_study(const Request& request,
                                               const std::vector<std::string>& policies,
                                               const std::vector<std::string>& kinds);

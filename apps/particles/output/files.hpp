@@ -14,8 +14,8 @@ namespace particles {
 /// --json. Throws Error(environment) that names the option, the path and the remedy.
 void prepare_files(const Scene& scene, const Options& options);
 
-/// The points of a snapshot with their ids and velocities, as the text of a VTP file for ParaView, in
-/// ASCII: the traced particles are few.
+/// The points of a snapshot with their ids and velocities, as the text of a VTP file for ParaView,
+/// in ASCII: the traced particles are few.
 [[nodiscard]] std::string vtp(const Snapshot& snapshot);
 
 /// Fields, trajectories and pictures, as the scene asks for them.

@@ -115,8 +115,8 @@ void check_scene(const Scene& scene);
 [[nodiscard]] double greatest_scale(const Scene& scene, const SceneObject& object);
 
 /// The least thickness of a wall, in the object's units, that its field can represent: a voxel's
-/// diagonal; by nearest look-up, which errs by half of one where it stops and lifts particles, and on
-/// both sides of a wall that moves, three.
+/// diagonal; by nearest look-up, which errs by half of one where it stops and lifts particles, and
+/// on both sides of a wall that moves, three.
 [[nodiscard]] double least_wall(const tess::dn::Rules& rules, const SceneObject& object);
 
 /// Sets the compression, within the scene's bounds or the usual ones. Throws where the scene has a

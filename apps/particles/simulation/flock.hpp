@@ -1,5 +1,5 @@
-// Particles of one species, with the id of each and whether it went through a surface. They are independent of one
-// another; their order has no meaning.
+// Particles of one species, with the id of each and whether it went through a surface. They are
+// independent of one another; their order has no meaning.
 #pragma once
 
 #include "collide/dn_field/particles.hpp"

@@ -46,8 +46,8 @@ struct RunResult {
   std::vector<tess::balance::Round> rounds;  ///< of the balancer, if there is one
 };
 
-/// Refuses a scene whose fields, which each process builds, and particles, which the processes share,
-/// are larger than the memory that this process may have. Throws Error(environment).
+/// Refuses a scene whose fields, which each process builds, and particles, which the processes
+/// share, are larger than the memory that this process may have. Throws Error(environment).
 void check_memory(const Scene& scene, int n_processes);
 
 /// Runs the scene from PE 0. `stage`: of this process; holds the fields afterwards.

@@ -180,8 +180,8 @@ class Study {
         compare_flights(flown(object, rules, dt, time, starts), wanted, now);
       });
     };
-    // They begin at 0.8 of the thickness with speed 1: the drag stops those that come straight on in
-    // front of the surface, and the flow turns them to the tangent there.
+    // They begin at 0.8 of the thickness with speed 1: the drag stops those that come straight on
+    // in front of the surface, and the flow turns them to the tangent there.
     Rules drag, flow;
     drag.surface_drag = SurfaceDrag{2.5 / thickness, 0.5 * thickness};
     flow.surface_flow = SurfaceFlow{4 / thickness, 4 / thickness, 0.7 * thickness};

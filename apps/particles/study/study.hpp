@@ -53,9 +53,9 @@ struct StudyOptions {
 };
 
 /// The study of the scene's first object: fields (resolution × construction × look-up, each with
-/// swept impact; exact ones also compressed), rules (rule × step, at the object's resolution: impact
-/// and spring against bounces off the triangles, drag and surface flow against steps of 0.002), and
-/// cost beside a tree of boxes. The scene has an object.
+/// swept impact; exact ones also compressed), rules (rule × step, at the object's resolution:
+/// impact and spring against bounces off the triangles, drag and surface flow against steps of
+/// 0.002), and cost beside a tree of boxes. The scene has an object.
 [[nodiscard]] std::vector<StudyRow> study(const Scene& scene, const StudyOptions& options);
 
 [[nodiscard]] std::string study_table(const std::vector<StudyRow>& rows);

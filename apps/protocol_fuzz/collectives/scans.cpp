@@ -2,8 +2,8 @@
 // end, with several scans under way at once.
 //
 // The operation joins lists of (index, number of the element's contribution), so that each result
-// names the contributions it is made of. The oracle: put in the order of indices, the results of one
-// scan grow by one contribution each, that of the element itself, and each contribution has one
+// names the contributions it is made of. The oracle: put in the order of indices, the results of
+// one scan grow by one contribution each, that of the element itself, and each contribution has one
 // result.
 #include "apps/protocol_fuzz/scenarios.hpp"
 #include "runtime/index_map.hpp"

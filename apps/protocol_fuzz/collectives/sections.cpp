@@ -1,7 +1,7 @@
 // Sections that overlap, each with several multicasts and reductions under way, while their members
 // migrate, are created late and are destroyed. The oracle: each member receives each multicast of
-// its section once and in one order, as long as it lives; result r of a section has the r-th contribution
-// of each of its members, of all that did not end before.
+// its section once and in one order, as long as it lives; result r of a section has the r-th
+// contribution of each of its members, of all that did not end before.
 #include "apps/protocol_fuzz/scenarios.hpp"
 
 #include <algorithm>

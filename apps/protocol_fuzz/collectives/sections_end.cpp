@@ -1,7 +1,8 @@
-// Sections that end in mid-use, on any PE and twice at once: with multicasts and contributions under
-// way, or before their elements have joined. The oracle: what is delivered until then is right (each
-// member receives each multicast at most once and in one order, a result has all members), the epoch
-// in which a section ends returns, and later sections of the same elements lack nothing.
+// Sections that end in mid-use, on any PE and twice at once: with multicasts and contributions
+// under way, or before their elements have joined. The oracle: what is delivered until then is
+// right (each member receives each multicast at most once and in one order, a result has all
+// members), the epoch in which a section ends returns, and later sections of the same elements lack
+// nothing.
 #include "apps/protocol_fuzz/scenarios.hpp"
 
 #include <map>

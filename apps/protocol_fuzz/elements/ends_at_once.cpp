@@ -1,5 +1,6 @@
 // Arrays and groups that several PEs end at once, while they are being created: the ends cross each
-// other and the creation. The oracle: all PEs have met each of them, all have ended, and nothing is left.
+// other and the creation. The oracle: all PEs have met each of them, all have ended, and nothing is
+// left.
 #include "apps/protocol_fuzz/scenarios.hpp"
 
 #include <algorithm>

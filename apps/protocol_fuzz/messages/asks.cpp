@@ -1,7 +1,7 @@
-// Awaited replies between elements that migrate and end: values, coroutines that ask others in turn,
-// errors, deadlines, asks that are given up, several at once, and delayed sends, some cancelled. The
-// oracle is what each function would return, and a record of the calls: each one that was sent to a
-// living element runs once, also if its reply is no longer wanted.
+// Awaited replies between elements that migrate and end: values, coroutines that ask others in
+// turn, errors, deadlines, asks that are given up, several at once, and delayed sends, some
+// cancelled. The oracle is what each function would return, and a record of the calls: each one
+// that was sent to a living element runs once, also if its reply is no longer wanted.
 #include "apps/protocol_fuzz/scenarios.hpp"
 #include "runtime/when.hpp"
 

@@ -16,8 +16,8 @@ class Distances {
   Distances(const Distances&) = delete;
   Distances& operator=(const Distances&) = delete;
 
-  /// Fills the layers `first` to `last` − 1 of `field`, whole blocks, up to its thickness; normals if
-  /// it has room for them. Any thread, different layers at once.
+  /// Fills the layers `first` to `last` − 1 of `field`, whole blocks, up to its thickness; normals
+  /// if it has room for them. Any thread, different layers at once.
   void fill(Field& field, int first, int last) const;
 
   [[nodiscard]] const Bvh& tree() const { return tree_; }

@@ -26,8 +26,8 @@ struct Head {
 static_assert(sizeof(Head) == 32);
 constexpr std::size_t checked_head_bytes = 24;
 
-/// The checksum over pieces of bytes: the hash is a bijection of each word, so that damage within one
-/// word is always detected, and other damage is missed once in 2^64.
+/// The checksum over pieces of bytes: the hash is a bijection of each word, so that damage within
+/// one word is always detected, and other damage is missed once in 2^64.
 class Checksum {
  public:
   void add(std::span<const std::byte> bytes) {

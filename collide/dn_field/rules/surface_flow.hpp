@@ -1,6 +1,6 @@
-// The surface flow, which changes only the velocity of particles near a surface. It is a loop of its
-// own over a block: a chain of a root, a quotient and polynomials then overlaps with that of the next
-// vector. Private to the step loop.
+// The surface flow, which changes only the velocity of particles near a surface. It is a loop of
+// its own over a block: a chain of a root, a quotient and polynomials then overlaps with that of
+// the next vector. Private to the step loop.
 #pragma once
 
 #include "collide/dn_field/rules/nearest_surface.hpp"

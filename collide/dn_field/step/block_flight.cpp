@@ -55,11 +55,11 @@ void BlockFlight::sample_all(const Run& run, std::span<const PlacedObject> objec
 }
 
 /// The correction of springs after the rules of the surface, for particles that one voxel's plane
-/// misleads: in a corner, past an edge or on a curved object a particle can enter a stiff spring from
-/// the side and would gain potential energy. after_ has the depth at the end of the step. A particle
-/// with more energy than it had loses speed; if its depth by itself takes more, it returns: it is put
-/// back to its start, which moved with the surface, with reversed velocity relative to the surface.
-/// Returns whether a particle did.
+/// misleads: in a corner, past an edge or on a curved object a particle can enter a stiff spring
+/// from the side and would gain potential energy. after_ has the depth at the end of the step. A
+/// particle with more energy than it had loses speed; if its depth by itself takes more, it
+/// returns: it is put back to its start, which moved with the surface, with reversed velocity
+/// relative to the surface. Returns whether a particle did.
 bool BlockFlight::limit_springs(const Run& run, const ParticleSpan& span) {
   const SpringConstants spring = run.constants.spring;  // copies that no store can change
   const ParticleSpan particles = span, start = start_.span(span.count);
@@ -160,7 +160,8 @@ void BlockFlight::fly(const Run& run, const ObjectPoses& poses, const ParticleSp
     fly_free(run.constants, block, poses.changes_in(i, next));
     i = next;
     near_.unpack(block);
-    // Waypoints get the particles' numbers in the block; those that only fill up a vector have none.
+    // Waypoints get the particles' numbers in the block; those that only fill up a vector have
+    // none.
     std::erase_if(scratch_.waypoints,
                   [&](const auto& bend) { return bend.particle >= near_.count; });
     for (Waypoint& bend : scratch_.waypoints) bend.particle = near_.index[bend.particle];

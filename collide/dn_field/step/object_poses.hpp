@@ -7,8 +7,8 @@
 
 namespace tess::dn {
 
-/// What make_stepper() computes once for a scene: the constants of its rules and the loops that hold
-/// them.
+/// What make_stepper() computes once for a scene: the constants of its rules and the loops that
+/// hold them.
 struct Stepper::Plan {
   Rules rules;
   double step = 0;

@@ -21,8 +21,8 @@ class ExodusFile {
 
  protected:
   [[noreturn]] void damaged(const char* call, int code) const;
-  /// A warning (a positive code) is an error, too: the library gives one, and no numbers, for what the
-  /// file lacks.
+  /// A warning (a positive code) is an error, too: the library gives one, and no numbers, for what
+  /// the file lacks.
   void check(int code, const char* call) const {
     if (code != 0) damaged(call, code);
   }
@@ -45,8 +45,8 @@ class ExodusFile {
     std::int64_t n_vertices_each = 0;
   };
   [[nodiscard]] ElementBlock block_of(std::int64_t id) const;
-  /// Refuses a variable that is not time steps × `n`, as ExodusII defines it. The library would read
-  /// other numbers in their place.
+  /// Refuses a variable that is not time steps × `n`, as ExodusII defines it. The library would
+  /// read other numbers in their place.
   void check_shape(const std::string& variable, std::int64_t n) const;
 
   const std::string& path_;

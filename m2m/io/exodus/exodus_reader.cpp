@@ -140,9 +140,9 @@ class ExodusReader : private ExodusFile {
     return factors;
   }
 
-  /// Leaves out the sides of skipped elements, and replaces those of split ones by the faces of their
-  /// tetrahedra. The factors of such a set are left out too, because the file does not say which
-  /// factor belongs to which side.
+  /// Leaves out the sides of skipped elements, and replaces those of split ones by the faces of
+  /// their tetrahedra. The factors of such a set are left out too, because the file does not say
+  /// which factor belongs to which side.
   void read_side_set(TetMesh& mesh, const ElementSplitter& volumes, std::int64_t id) const {
     const auto [n, n_factors] = size_of(EX_SIDE_SET, id);
     std::vector<std::int64_t> elements(n), sides(n);

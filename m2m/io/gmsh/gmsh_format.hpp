@@ -1,5 +1,5 @@
-// What the readers of meshes and of fields in MSH files share: the format of a file, and the tags by
-// which it names nodes and elements.
+// What the readers of meshes and of fields in MSH files share: the format of a file, and the tags
+// by which it names nodes and elements.
 #pragma once
 
 #include "m2m/io/gmsh/gmsh_scanner.hpp"

@@ -151,7 +151,8 @@ class GmshReader {
   }
 
   /// Reads the vertices of an element with the tag `label`. `entity` and `group`: the entity of the
-  /// model that it meshes, and the physical group that it is written for (version 2.2, otherwise 0).
+  /// model that it meshes, and the physical group that it is written for (version 2.2, otherwise
+  /// 0).
   template <class Tag>
   void element(const GmshElement& type, Tag label, int entity = 0, int group = 0) {
     const auto volume = gmsh_volume(type.number);
@@ -178,8 +179,8 @@ class GmshReader {
     elements_.add(*volume, corners);
   }
 
-  /// Version 2.2 has one physical group per element. Of an entity in several groups gmsh writes each
-  /// element once for each group, in a row, every time with another tag.
+  /// Version 2.2 has one physical group per element. Of an entity in several groups gmsh writes
+  /// each element once for each group, in a row, every time with another tag.
   bool is_repeated(const GmshElement& type, const std::array<VertexId, 10>& ids, int entity,
                    int group) {
     const Volume last = std::exchange(last_volume_, {&type, ids, entity, group});

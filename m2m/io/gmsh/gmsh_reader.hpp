@@ -1,6 +1,6 @@
 // Reads the tetrahedra of a gmsh file, MSH 2.2 or 4.1, ASCII or binary. Points, lines and surfaces
-// are skipped and counted. Every count is checked against the remaining bytes before memory is allocated, so a damaged file
-// gives one line of error.
+// are skipped and counted. Every count is checked against the remaining bytes before memory is
+// allocated, so a damaged file gives one line of error.
 #pragma once
 
 #include "m2m/io/gmsh/gmsh_format.hpp"

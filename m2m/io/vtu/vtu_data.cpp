@@ -57,8 +57,8 @@ std::optional<std::string> inflated(std::string_view bytes, bool is_base64,
     if (n > bytes.size() - packed_bytes) return std::nullopt;
     packed_bytes += n;
   }
-  // zlib packs at most 1 032 bytes into one. The last block may be partial: its bytes count then, not
-  // those of a block.
+  // zlib packs at most 1 032 bytes into one. The last block may be partial: its bytes count then,
+  // not those of a block.
   const std::uint64_t most = 1100 * packed_bytes + 1024;
   const std::uint64_t n_full = last_bytes == 0 ? n_blocks : n_blocks - 1;
   if (last_bytes > block_bytes || last_bytes > most) return std::nullopt;

@@ -1,6 +1,6 @@
 // The pieces and arrays of a VTU file (VTK XML UnstructuredGrid), which are decoded when they are
-// asked for. Arrays may be ascii, binary (base64) or appended (raw or base64), of either byte order,
-// and compressed by zlib; other compressors are refused by name.
+// asked for. Arrays may be ascii, binary (base64) or appended (raw or base64), of either byte
+// order, and compressed by zlib; other compressors are refused by name.
 #pragma once
 
 #include "m2m/io/vtu/vtu_data.hpp"

@@ -17,8 +17,8 @@ constexpr std::size_t most_points = std::numeric_limits<VertexId>::max();
 /// Stands for the type of a cell that another piece has, too, or that is hidden.
 constexpr std::int64_t ghost = -1;
 
-/// The types of the cells of a piece. Ghost cells (vtkDataSetAttributes: DUPLICATECELL, REFINEDCELL,
-/// HIDDENCELL) are no part of the mesh; they would count twice.
+/// The types of the cells of a piece. Ghost cells (vtkDataSetAttributes: DUPLICATECELL,
+/// REFINEDCELL, HIDDENCELL) are no part of the mesh; they would count twice.
 std::vector<std::int64_t> types_of(const VtuFile& file, const VtuPiece& piece) {
   std::vector<std::int64_t> types = file.integers(file.array(piece.cells, "types"), piece.n_cells);
   const auto marks = std::find_if(piece.cell_data.begin(), piece.cell_data.end(),

@@ -22,8 +22,8 @@ void append(std::uint32_t character, std::string& out) {
     out.push_back(static_cast<char>(0x80U | ((character >> (6 * i)) & 0x3FU)));
 }
 
-/// Reads a number such as "&#39;" or "&#x27;" to the character that it names. Its length, or 0 if the text
-/// does not begin with one.
+/// Reads a number such as "&#39;" or "&#x27;" to the character that it names. Its length, or 0 if
+/// the text does not begin with one.
 std::size_t read_number(std::string_view text, std::string& out) {
   if (!text.starts_with("&#")) return 0;
   const std::size_t begin = text.substr(2).starts_with("x") ? 3 : 2;

@@ -10,7 +10,8 @@
 namespace tess::balance {
 namespace {
 
-// Of 9.5 MB of JSON a thirty-third remains after 0.07 s; at 11, the default, a forty-first after 17 s.
+// Of 9.5 MB of JSON a thirty-third remains after 0.07 s; at 11, the default, a forty-first after 17
+// s.
 constexpr int quality = 5;
 
 const std::uint8_t* bytes_of(std::string_view text) {

@@ -8,7 +8,8 @@ namespace {
 
 using nlohmann::json;
 
-/// An array of numbers or strings, as the index is written. The hash of the index if it is not known.
+/// An array of numbers or strings, as the index is written. The hash of the index if it is not
+/// known.
 json index_of(const Elements& e, std::size_t i) {
   if (e.index.empty()) return json::array({e.key[i].element});
   json index = json::parse(e.index[i], nullptr, false);

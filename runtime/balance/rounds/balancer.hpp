@@ -8,8 +8,8 @@
 //         resume   ->  every element continues
 //
 // A periodic round runs beside the elements' work. Its messages are expedited, and unless the
-// strategy is distributed it neither awaits an epoch nor continues a coroutine, since both take their
-// turn after the messages that are ready:
+// strategy is distributed it neither awaits an epoch nor continues a coroutine, since both take
+// their turn after the messages that are ready:
 //
 //     due -> collect -> (reduction) -> collected -> move_beside -> moved
 //
@@ -100,7 +100,8 @@ class Balancer final : public Group<Balancer>, private ElementWatcher {
   void fetch();
   void sum_outcome(const Callback<Outcome>& target);
 
-  /// Those of a periodic round, which elements' messages would otherwise delay at each of its steps.
+  /// Those of a periodic round, which elements' messages would otherwise delay at each of its
+  /// steps.
   using EntryAttributes =
       Attributes<EntryMethod<&Balancer::due, expedited>, EntryMethod<&Balancer::collect, expedited>,
                  EntryMethod<&Balancer::collected, expedited>,

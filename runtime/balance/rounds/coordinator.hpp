@@ -9,8 +9,8 @@
 // under the placement before the round show the gain, and a negative gain undoes the moves.
 //
 // That holds while loads persist. If a round gained less than half of what it predicted, they do
-// not: the next round waits until twice as much is lost, counted from its cost plus the seconds that
-// its moves cost the phase after it. So loads that change at random cause ever fewer rounds. A
+// not: the next round waits until twice as much is lost, counted from its cost plus the seconds
+// that its moves cost the phase after it. So loads that change at random cause ever fewer rounds. A
 // round that gains what it predicted ends this. The gain of a distributed round is not known, since
 // no PE has the loads of all elements: it is neither undone nor judged.
 #pragma once

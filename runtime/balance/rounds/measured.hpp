@@ -34,16 +34,16 @@ class Measured {
 
   /// The sums of this PE in the phase so far, at a speed.
   [[nodiscard]] PhaseSums sums(double speed, Others others) const;
-  /// The round that reported is over: what it did on this PE, as the strategy on the coordinator, is
-  /// not background of the phase that begins. For rounds for which the elements wait.
+  /// The round that reported is over: what it did on this PE, as the strategy on the coordinator,
+  /// is not background of the phase that begins. For rounds for which the elements wait.
   void round_ends() { begin_phase(); }
   /// Begins a new phase and discards earlier measurements.
   void clear();
 
   /// The loads that a checkpoint had of the elements here, in seconds.
   [[nodiscard]] PastLoad past() const;
-  /// Takes them for those of the phase so far: of the last phase before the checkpoint, or of the one
-  /// that the checkpoint interrupted. Returns the number of elements whose load it had.
+  /// Takes them for those of the phase so far: of the last phase before the checkpoint, or of the
+  /// one that the checkpoint interrupted. Returns the number of elements whose load it had.
   std::uint64_t recall(bool interrupted);
 
   struct Moved {

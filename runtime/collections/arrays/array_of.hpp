@@ -148,13 +148,14 @@ class ArrayOf : public Collection {
     execute(static_cast<Indexed&>(*message->receiver), message);
   }
 
-  /// Runs a message to an element of an array with this type of index (Action::run). It waits if the
-  /// array is not known here yet.
+  /// Runs a message to an element of an array with this type of index (Action::run). It waits if
+  /// the array is not known here yet.
   static void run_message(Pe& pe, Envelope* envelope);
   /// Ends such a message whose array has ended. Returns the number of dead letters, 0 or 1.
   static std::uint64_t drop_message(Pe& pe, Envelope& envelope);
 
-  /// The element of this index if it may be called now, inside another entry method; otherwise null.
+  /// The element of this index if it may be called now, inside another entry method; otherwise
+  /// null.
   [[nodiscard]] Indexed* free_to_run(const Index& index) {
     if (!pe_.may_nest()) return nullptr;
     Indexed* element = find(index);

@@ -1,5 +1,6 @@
 // A migrating element. Within a process the object itself travels (except with TESS_CHECKS=all);
-// between processes its serialised state. The array sends it by ship() and receives it by take_in().
+// between processes its serialised state. The array sends it by ship() and receives it by
+// take_in().
 #pragma once
 
 #include "runtime/collections/arrays/array_of.hpp"

@@ -2,8 +2,8 @@
 //
 //     | n | incarnation, kind, [past load], length, index, state … |
 //
-// After a restart any PE reads these bytes and sends each element to the home of its index. The load
-// of an element that was balanced waits there for the next balancer.
+// After a restart any PE reads these bytes and sends each element to the home of its index. The
+// load of an element that was balanced waits there for the next balancer.
 #include "runtime/collections/arrays/saving.hpp"
 
 #include "runtime/collections/collection_action.hpp"

@@ -1,6 +1,6 @@
-// One generation of a section's lists on one PE: the members that the PE delivers multicasts to, and
-// the children in the tree of PEs that it passes them on to. It stays until all its multicasts are
-// delivered here. Multicasts, Setup and Retire arrive in any order.
+// One generation of a section's lists on one PE: the members that the PE delivers multicasts to,
+// and the children in the tree of PEs that it passes them on to. It stays until all its multicasts
+// are delivered here. Multicasts, Setup and Retire arrive in any order.
 #pragma once
 
 #include "runtime/collections/sections.hpp"

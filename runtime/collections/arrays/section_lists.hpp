@@ -11,8 +11,8 @@
 //
 // So when a multicast is numbered, it is decided which PE sends it to each member, and a stale list
 // costs only a hop. A member that gets an ordinary message reports its place to the root. Once the
-// stale entries are a sixteenth of the members the root makes new lists: their next generation. A PE
-// keeps a generation until it has delivered all its multicasts (Retire gives their number).
+// stale entries are a sixteenth of the members the root makes new lists: their next generation. A
+// PE keeps a generation until it has delivered all its multicasts (Retire gives their number).
 //
 // What the root knows of the members is in SectionRoster, the lists of one PE in SectionGeneration.
 #pragma once

@@ -1,6 +1,6 @@
-// The messages by which the PEs of a section keep its lists: from any PE to the root (Create, Start),
-// from the root down the tree of PEs (Setup, Multicast, Retire), from members' PEs to the root (Seen,
-// Lost), and what an element gets (Join, Token). SectionLists sends and receives them.
+// The messages by which the PEs of a section keep its lists: from any PE to the root (Create,
+// Start), from the root down the tree of PEs (Setup, Multicast, Retire), from members' PEs to the
+// root (Seen, Lost), and what an element gets (Join, Token). SectionLists sends and receives them.
 #pragma once
 
 #include "runtime/collections/arrays/array_of.hpp"

@@ -5,8 +5,8 @@
 //         |                          |                                  |
 //         +----------- gone ---------+---------------- gone ------------+
 //
-// An entry of the lists is stale once its member was seen elsewhere or is gone. So is the place of a
-// member that the lists do not have.
+// An entry of the lists is stale once its member was seen elsewhere or is gone. So is the place of
+// a member that the lists do not have.
 #pragma once
 
 #include "runtime/collections/arrays/array_of.hpp"

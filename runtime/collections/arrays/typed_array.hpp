@@ -45,7 +45,8 @@ concept NotSaved = requires { requires !C::in_checkpoints; };
 template <class C>
 concept SharedInProcess = requires { C::shared_in_process; };
 
-/// After a restart on another number of PEs a member of a group takes over the state of another one.
+/// After a restart on another number of PEs a member of a group takes over the state of another
+/// one.
 template <class C>
 concept Absorbs = requires(C& member, C& other) { member.absorb(std::move(other)); };
 

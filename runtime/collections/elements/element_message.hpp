@@ -67,8 +67,8 @@ struct ElementAction : Action {
   using Undelivered = void (*)(Pe&, ElementMessage<Index>&);
 
   /// The action of `Message`. `traffic` is user, or control for a message that the user did not
-  /// send and that is no dead letter. (A constructor, and no function that returns the action: where
-  /// a program never names `Message::entry`, g++ 12 would register a temporary instead.)
+  /// send and that is no dead letter. (A constructor, and no function that returns the action:
+  /// where a program never names `Message::entry`, g++ 12 would register a temporary instead.)
   template <class Message>
   explicit ElementAction(std::type_identity<Message> /*of*/, Invoke i, Construct c = nullptr,
                          Traffic t = Traffic::user, Undelivered u = nullptr)

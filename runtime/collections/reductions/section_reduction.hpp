@@ -1,6 +1,6 @@
 // Reductions over the members of a section, seen from one PE. Contributions are numbered by the
-// members, as those to an array are. The root counts: number r is complete when as many members have
-// contributed to r as had not been destroyed before r, wherever they contributed.
+// members, as those to an array are. The root counts: number r is complete when as many members
+// have contributed to r as had not been destroyed before r, wherever they contributed.
 //
 // On the way to the root contributions are combined along the tree over all PEs, of which only the
 // PEs with members and those between them and the root take part:
@@ -10,9 +10,10 @@
 //                have passed the number.
 //     detached   a PE without both detaches, and sends what it holds directly to the root.
 //
-// What comes too late for a report (the member has arrived since, the child has attached since) goes
-// directly to the root. So the result never depends on the tree being current; a PE waits only for
-// what is certain to come: a contribution of a member here, or a report or the detachment of a child.
+// What comes too late for a report (the member has arrived since, the child has attached since)
+// goes directly to the root. So the result never depends on the tree being current; a PE waits only
+// for what is certain to come: a contribution of a member here, or a report or the detachment of a
+// child.
 #pragma once
 
 #include "runtime/collections/reductions/gathered.hpp"

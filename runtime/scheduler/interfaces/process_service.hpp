@@ -1,5 +1,6 @@
 // What the runtime asks of the service of its process: messages that are posted later, on machines
-// in real time, and the report that a signal or a browser asks for. The service layer implements it.
+// in real time, and the report that a signal or a browser asks for. The service layer implements
+// it.
 #pragma once
 
 #include "runtime/core/ids.hpp"
@@ -19,7 +20,8 @@ class ProcessService {
   ProcessService& operator=(const ProcessService&) = delete;
   virtual ~ProcessService() = default;
 
-  /// Posts a message to a PE of this process once the delay is over; takes ownership. Any PE thread.
+  /// Posts a message to a PE of this process once the delay is over; takes ownership. Any PE
+  /// thread.
   virtual void post_after(PeId to, Envelope* message, Time delay) = 0;
   /// The run ends by a signal that another process may have received; `waits` is the census of a PE
   /// of this process. Called on the thread of each PE before it leaves the run.

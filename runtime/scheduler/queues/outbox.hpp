@@ -16,9 +16,10 @@
 //     portion = limit / (2 × PEs of the receiving process):  its PEs together keep back less than
 //     half of the limit, so some of the bytes under way are always about to be repaid
 //
-// Messages that wait here leave in the order of their priorities. A message that has run is repaid wherever it goes then, and messages of the runtime itself are
-// not charged. So nothing that holds credit waits for credit, and no deadlock is possible. A
-// message that waits here counts as sent and not processed, so its epochs wait for it.
+// Messages that wait here leave in the order of their priorities. A message that has run is repaid
+// wherever it goes then, and messages of the runtime itself are not charged. So nothing that holds
+// credit waits for credit, and no deadlock is possible. A message that waits here counts as sent
+// and not processed, so its epochs wait for it.
 //
 // The other end is Pe::receive and Pe::place. An outbox belongs to one PE.
 #pragma once

@@ -1,13 +1,14 @@
-// The messages of a PE that have a priority: the smallest number first, and first in first out among
-// equal ones. A message joins the run of messages that were last pushed with its priority, so a few
-// priorities cost little more than a list each. A heap orders the runs:
+// The messages of a PE that have a priority: the smallest number first, and first in first out
+// among equal ones. A message joins the run of messages that were last pushed with its priority, so
+// a few priorities cost little more than a list each. A heap orders the runs:
 //
 //     heap:  (-7, 1) (-7, 9) (3, 4) …        priority and number of the run; a pair occurs once
 //               │
 //     run:   first ─► … ─► last              linked through the messages
 //
-// A small table finds the newest run of a priority. It may forget one: then the next message of that
-// priority begins a new run, whose number is greater, so the order is kept. Used by one thread.
+// A small table finds the newest run of a priority. It may forget one: then the next message of
+// that priority begins a new run, whose number is greater, so the order is kept. Used by one
+// thread.
 #pragma once
 
 #include "runtime/base/link.hpp"

@@ -38,8 +38,8 @@ class ReadyQueue {
     prioritised_.push(link, priority);
   }
 
-  /// The message without a priority that comes after n others, already prefetched; null if there is none. n is
-  /// less than the prefetch distance.
+  /// The message without a priority that comes after n others, already prefetched; null if there is
+  /// none. n is less than the prefetch distance.
   [[nodiscard]] Link* ahead(std::size_t n) const {
     return head_ + n < tail_ ? ring_[(head_ + n) & mask_] : nullptr;
   }

@@ -1,6 +1,6 @@
 // The collections on a PE by id, and the messages that arrived before their collection was known
-// here: they wait in the order of their arrival. Included by sources only, since the hash tables are
-// costly to compile.
+// here: they wait in the order of their arrival. Included by sources only, since the hash tables
+// are costly to compile.
 #pragma once
 
 #include "runtime/core/ids.hpp"

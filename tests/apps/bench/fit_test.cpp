@@ -1,5 +1,5 @@
-// The parameters that bench --calibrate finds, from machines whose times are known formulas, and the
-// file that it writes.
+// The parameters that bench --calibrate finds, from machines whose times are known formulas, and
+// the file that it writes.
 #include "apps/bench/calibrate/fit.hpp"
 
 #include "tests/support/catch.hpp"

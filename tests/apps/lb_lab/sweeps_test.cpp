@@ -260,7 +260,8 @@ TEST_CASE("a saved snapshot has the index of each element and its measured load"
     for (int k = 0; k < 4; ++k) {
       const nlohmann::json& task = tasks.at(static_cast<std::size_t>(k));
       CHECK(task.at("entity").at("index") == nlohmann::json::array({4 * pe + k}));
-      // The cells of chare x are the x-th part of a line whose cells cost in proportion to their number.
+      // The cells of chare x are the x-th part of a line whose cells cost in proportion to their
+      // number.
       const double load = task.at("time").get<double>();
       if (pe == 0 && k == 0) first = load;
       CHECK(load > 0);

@@ -1,4 +1,5 @@
-// Runs on the simulated machine in adversarial order, with forced migration and balancing: one result.
+// Runs on the simulated machine in adversarial order, with forced migration and balancing: one
+// result.
 #include "apps/leanmd/stability.hpp"
 #include "apps/leanmd/study.hpp"
 #include "tests/support/adversarial.hpp"

@@ -95,8 +95,8 @@ TEST_CASE("many PEs do not wait for one that has the only voxel", "[collide][par
   }
 }
 
-// In voxels of a twelfth, boxes longer than a sixth stood on a level of eight voxels, and every PE waited
-// for the one that compared all others with them.
+// In voxels of a twelfth, boxes longer than a sixth stood on a level of eight voxels, and every PE
+// waited for the one that compared all others with them.
 TEST_CASE("objects over more than the range of a double are refused", "[collide][parallel]") {
   constexpr double most = std::numeric_limits<double>::max();
   const Aabb small{{0, 0, 0}, {1, 1, 1}};

@@ -1,10 +1,10 @@
 // Collisions over real processes and on threads, compared with all pairs: run by ctest. Two clients
-// per PE have boxes at random places, which move from round to round; a third of the boxes are equal,
-// so that a voxel has more pairs than one message. Clients and voxels migrate between rounds, and
-// clients while their pairs are found. In every other round one owner receives a pair, otherwise both. In
-// some rounds boxes have capsules and are searched in pieces, which changes no pair. Then boxes that move
-// little are collided with a slack: of clients that stay, and in two colliders at once, of which one has
-// clients and voxels that migrate between rounds.
+// per PE have boxes at random places, which move from round to round; a third of the boxes are
+// equal, so that a voxel has more pairs than one message. Clients and voxels migrate between
+// rounds, and clients while their pairs are found. In every other round one owner receives a pair,
+// otherwise both. In some rounds boxes have capsules and are searched in pieces, which changes no
+// pair. Then boxes that move little are collided with a slack: of clients that stay, and in two
+// colliders at once, of which one has clients and voxels that migrate between rounds.
 #include "collide/collider.hpp"
 #include "runtime/balance.hpp"
 #include "runtime/core/hash.hpp"
@@ -26,8 +26,8 @@ constexpr std::int32_t n_rounds = 6;
 constexpr std::int32_t first_slow_round = 100;
 constexpr double slack = 0.01;
 
-/// From this round on the boxes are those of the first, each moved by at most a quarter of the slack per
-/// round, and none are equal.
+/// From this round on the boxes are those of the first, each moved by at most a quarter of the
+/// slack per round, and none are equal.
 std::vector<Aabb> slow_boxes_of(std::int32_t client, std::int32_t n_clients, std::int32_t round) {
   std::mt19937_64 random(static_cast<std::uint64_t>(client));
   std::uniform_real_distribution<double> place(0, 4), extent(0, 0.5), way(-1, 1);

@@ -73,8 +73,8 @@ TEST_CASE("on request one owner receives a pair: the one of an object of the PE 
        {"--pes=2", "--sim=pes=2,cost=100ns", "--sim=pes=2,per-process=1,cost=100ns"}) {
     CAPTURE(option);
     using Counts = std::vector<std::int64_t>;
-    // The PE that has by far more of the objects makes all voxels. (With a seed, the simulated machine
-    // moves some of them.)
+    // The PE that has by far more of the objects makes all voxels. (With a seed, the simulated
+    // machine moves some of them.)
     CHECK(received(option, Receivers::one_owner, {9, 2}) == Counts{18 * n_places, 0});
     CHECK(received(option, Receivers::one_owner, {2, 9}) == Counts{0, 18 * n_places});
     CHECK(received(option, Receivers::both_owners, {2, 9}) == Counts(2, 18 * n_places));

@@ -32,7 +32,8 @@ class Street : public Chare<Street> {
   std::uint64_t n_ = 0;
 };
 
-/// How many messages PE 1 sends to PE 0 in a run with so many collisions, on two processes of one PE.
+/// How many messages PE 1 sends to PE 0 in a run with so many collisions, on two processes of one
+/// PE.
 unsigned long long n_sent(std::int32_t n_houses, std::int32_t n_collisions) {
   std::string name = "test", option = "--sim=pes=2,per-process=1,cost=100ns";
   std::array<char*, 3> argv{name.data(), option.data(), nullptr};
@@ -67,15 +68,16 @@ unsigned long long n_sent(std::int32_t n_houses, std::int32_t n_collisions) {
   return n;
 }
 
-/// In a collision whose voxels are there: the first one creates them, which takes messages of its own.
+/// In a collision whose voxels are there: the first one creates them, which takes messages of its
+/// own.
 unsigned long long n_sent_in_second(std::int32_t n_houses) {
   return n_sent(n_houses, 2) - n_sent(n_houses, 1);
 }
 
 }  // namespace
 
-// A PE delivers the objects of 4 096 entries at a time. An epoch that lasts longer has some messages
-// more.
+// A PE delivers the objects of 4 096 entries at a time. An epoch that lasts longer has some
+// messages more.
 TEST_CASE("a PE sends the objects of many voxels to another process in one message",
           "[collide][parallel]") {
   const auto of_ten = n_sent_in_second(10), of_thousand = n_sent_in_second(1000),

@@ -1,5 +1,6 @@
-// Colliders with a slack: boxes that move little, far, or not at all, whose owners migrate and change
-// what they submit, against all pairs in each step; when pairs are kept; and which input is refused.
+// Colliders with a slack: boxes that move little, far, or not at all, whose owners migrate and
+// change what they submit, against all pairs in each step; when pairs are kept; and which input is
+// refused.
 #include "collide/collider.hpp"
 #include "collide/parallel/kept_pairs.hpp"
 #include "collide/parallel/plan.hpp"

@@ -1,5 +1,5 @@
-// A point is in a capsule if a ball of the same radius around it meets the segment, which the library
-// decides exactly.
+// A point is in a capsule if a ball of the same radius around it meets the segment, which the
+// library decides exactly.
 #include "collide/capsule.hpp"
 
 #include "collide/sphere.hpp"

@@ -12,8 +12,8 @@ using namespace tess::collide::testing;
 
 namespace {
 
-/// The nearest point of a triangle by definition: of those corners, feet on edges and foot on the face
-/// that are within it.
+/// The nearest point of a triangle by definition: of those corners, feet on edges and foot on the
+/// face that are within it.
 Exact exact_nearest(const Triangle& t, const Point& point) {
   const Exact p = exact(point);
   std::vector<Exact> all;

@@ -25,8 +25,9 @@ Vector way(const Point& from, const Point& to) {
   return d;
 }
 
-/// Squared distances from `p` to the corners of a triangle, and to those lines and the plane through
-/// them on which the nearest point is within the triangle. The least is the triangle's distance.
+/// Squared distances from `p` to the corners of a triangle, and to those lines and the plane
+/// through them on which the nearest point is within the triangle. The least is the triangle's
+/// distance.
 std::vector<Fraction> distances2(const Triangle& t, const Point& p) {
   std::vector<Fraction> all;
   const auto& c = t.corners;

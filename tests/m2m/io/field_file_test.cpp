@@ -87,8 +87,8 @@ std::vector<std::pair<int, std::vector<double>>> rows_of(const Field& field, int
   return rows;
 }
 
-/// A hexahedron, a triangle and a tetrahedron in blocks 3, 4 and 5, with element variables `rho` and
-/// `q`, the second missing in block 5.
+/// A hexahedron, a triangle and a tetrahedron in blocks 3, 4 and 5, with element variables `rho`
+/// and `q`, the second missing in block 5.
 std::string solids_with_variables(const Scratch& scratch) {
   const std::string path = scratch.path("solids.exo");
   int compute = 8, stored = 8;

@@ -1,5 +1,5 @@
-// Programs that couple two codes by the library, each with pieces of its own that migrate, run at the
-// same time, are empty, or are born and end. Every one checks its values against a closed form.
+// Programs that couple two codes by the library, each with pieces of its own that migrate, run at
+// the same time, are empty, or are born and end. Every one checks its values against a closed form.
 // Run on threads, the simulated machine and under mpirun by coupled_codes.sh.
 //
 //     test_coupled_codes            all of them
@@ -270,7 +270,8 @@ Task three_at_once() {
   co_await end(codes);
 }
 
-/// Several fields by one coupling at once, in both directions at once, and again before the last ended.
+/// Several fields by one coupling at once, in both directions at once, and again before the last
+/// ended.
 Task many_fields() {
   Two codes;
   co_await make(codes, 4, 6);
@@ -469,7 +470,8 @@ Task destroyed() {
   co_await end(codes);
 }
 
-/// The voxels of a search end before the next one, which makes them again, also while values are under way.
+/// The voxels of a search end before the next one, which makes them again, also while values are
+/// under way.
 Task retired() {
   Two codes;
   co_await make(codes, 4, 5);

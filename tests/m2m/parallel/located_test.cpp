@@ -1,5 +1,5 @@
-// What a search says of each target point, against all pairs in one thread: status, distance, donor,
-// value, and the worst places; on every decomposition and schedule.
+// What a search says of each target point, against all pairs in one thread: status, distance,
+// donor, value, and the worst places; on every decomposition and schedule.
 #include "m2m/count_nan.hpp"
 #include "m2m/interpolate/donor.hpp"
 #include "m2m/interpolate/nearest_point.hpp"

@@ -13,7 +13,8 @@ using namespace tess::m2m;
 
 namespace {
 
-/// What several codes of an application may have in common stands between the chare and the library.
+/// What several codes of an application may have in common stands between the chare and the
+/// library.
 template <class Code>
 class Common : public Chare<Code, Index1>, public Piece<Code> {
  public:
@@ -22,7 +23,8 @@ class Common : public Chare<Code, Index1>, public Piece<Code> {
 class Own : public Common<Own> {};
 static_assert(std::is_default_constructible_v<Own>);
 
-/// Functions of a program, which its pieces call: a base class that had these names would hide them.
+/// Functions of a program, which its pieces call: a base class that had these names would hide
+/// them.
 int sides(int n) {
   return n;
 }

@@ -1,5 +1,5 @@
-// Linear functions in elements, given at the corners of their tetrahedra: exact for linear fields, and
-// limited to what a loop over all elements finds around.
+// Linear functions in elements, given at the corners of their tetrahedra: exact for linear fields,
+// and limited to what a loop over all elements finds around.
 #include "m2m/reconstruct/element_corners.hpp"
 
 #include "runtime/core/hash.hpp"
@@ -21,8 +21,8 @@ using tess::test::Values;
 
 namespace {
 
-/// A mesh whose elements were split, with ids. Vertices are moved, so that the tetrahedra of an element
-/// differ in volume.
+/// A mesh whose elements were split, with ids. Vertices are moved, so that the tetrahedra of an
+/// element differ in volume.
 struct Elements {
   TetMesh mesh;
   std::vector<GlobalId> of_tet, tet_ids;

@@ -97,8 +97,9 @@ struct Searches {
   std::uint64_t n_searches = 0, n_different = 0, n_kept = 0, n_kept_wanted = 0;
 };
 
-/// A coupling that searches again and again, beside one that is made anew each time. The target moves by
-/// eighths of a cube, so many of its points are on faces, edges and vertices, and some are outside.
+/// A coupling that searches again and again, beside one that is made anew each time. The target
+/// moves by eighths of a cube, so many of its points are on faces, edges and vertices, and some are
+/// outside.
 Task search_again(std::uint64_t seed, Searches& found) {
   Random random(seed);
   ArrayProxy<MovedPatch> source, target;

@@ -189,7 +189,8 @@ TEST_CASE("the narrow phase finds the best tetrahedron of each point among all",
 
 TEST_CASE("a point snaps to the same tetrahedron whether one piece has all or each has one",
           "[m2m]") {
-  // The points are within rounding of the first one, within the tolerance of both, and nearer to the second.
+  // The points are within rounding of the first one, within the tolerance of both, and nearer to
+  // the second.
   constexpr double gap = 1.2e-11;
   const std::vector<Point> corners{
       {0, 0, 0},       {1, 0, 0},         {0, 1, 0},         {0.3, 0.3, -1},

@@ -1,4 +1,5 @@
-// Periodic rounds run beside the elements' work: a round does not wait for the messages that are ready.
+// Periodic rounds run beside the elements' work: a round does not wait for the messages that are
+// ready.
 #include "runtime/balance.hpp"
 #include "runtime/runtime.hpp"
 #include "runtime/testing.hpp"

@@ -1,5 +1,5 @@
-// Buddy copies: every file of a checkpoint is kept twice, and a restart uses the copy of one that is
-// damaged or lost.
+// Buddy copies: every file of a checkpoint is kept twice, and a restart uses the copy of one that
+// is damaged or lost.
 #include "runtime/checkpoint.hpp"
 #include "runtime/checkpoint/files.hpp"
 #include "runtime/machine/threads.hpp"

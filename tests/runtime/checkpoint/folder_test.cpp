@@ -1,5 +1,5 @@
-// The checkpoints of one run are never mixed with those of another: which folder a run may write to,
-// and which checkpoints it keeps there.
+// The checkpoints of one run are never mixed with those of another: which folder a run may write
+// to, and which checkpoints it keeps there.
 #include "runtime/checkpoint.hpp"
 #include "runtime/checkpoint/files.hpp"
 #include "runtime/core/error.hpp"

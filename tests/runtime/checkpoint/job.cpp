@@ -1,7 +1,7 @@
-// test_checkpoint_job FOLDER LAST [buddy | buddy-restart]: runs the world of world.hpp to step LAST, with
-// a checkpoint after each second step, from the last checkpoint in FOLDER if there is one. Prints the
-// step that it began at and its log. With "buddy" FOLDER is local to each rank, and the run restarts
-// only if told to.
+// test_checkpoint_job FOLDER LAST [buddy | buddy-restart]: runs the world of world.hpp to step
+// LAST, with a checkpoint after each second step, from the last checkpoint in FOLDER if there is
+// one. Prints the step that it began at and its log. With "buddy" FOLDER is local to each rank, and
+// the run restarts only if told to.
 #include "runtime/checkpoint.hpp"
 #include "tests/runtime/checkpoint/world.hpp"
 

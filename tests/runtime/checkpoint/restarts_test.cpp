@@ -1,5 +1,5 @@
-// What a run made is known as made in the run that goes on with its checkpoint, and in the one after
-// that.
+// What a run made is known as made in the run that goes on with its checkpoint, and in the one
+// after that.
 #include "runtime/checkpoint.hpp"
 #include "runtime/runtime.hpp"
 #include "runtime/when.hpp"

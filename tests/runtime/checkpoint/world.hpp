@@ -1,6 +1,7 @@
-// A small program with everything that a checkpoint saves: a dense array that exchanges messages and
-// migrates, a sparse array of words that come and go, a group, a single chare, a section. Its log
-// depends on every result, and on nothing else: it is the same for every number of PEs and schedule.
+// A small program with everything that a checkpoint saves: a dense array that exchanges messages
+// and migrates, a sparse array of words that come and go, a group, a single chare, a section. Its
+// log depends on every result, and on nothing else: it is the same for every number of PEs and
+// schedule.
 #pragma once
 
 #include "runtime/checkpoint.hpp"

@@ -6,8 +6,8 @@
 //     own time   each element contributes a fixed number of times, whenever it likes, while
 //                broadcasts come at any time
 //
-// The oracles: a result has each contribution to its number once, and none comes later; no epoch of a
-// contribution is done before the result is delivered. In rounds the element that receives
+// The oracles: a result has each contribution to its number once, and none comes later; no epoch of
+// a contribution is done before the result is delivered. In rounds the element that receives
 // broadcast b + 1 contributes to reduction b.
 #include "runtime/collections/reductions/reduction_tree.hpp"
 

@@ -1,9 +1,9 @@
-// Reductions over a section by themselves: one part per PE and the count at the root, messages in any
-// order, and members that migrate and are destroyed at any time, also before the root knows how many
-// there are.
+// Reductions over a section by themselves: one part per PE and the count at the root, messages in
+// any order, and members that migrate and are destroyed at any time, also before the root knows how
+// many there are.
 //
-// The oracles: a result has the contribution of each member that was not destroyed before, once, and
-// none comes later; the epochs of its contributions are open until then, and done afterwards.
+// The oracles: a result has the contribution of each member that was not destroyed before, once,
+// and none comes later; the epochs of its contributions are open until then, and done afterwards.
 #include "runtime/collections/reductions/section_reduction.hpp"
 
 #include "tests/runtime/collections/network.hpp"

@@ -1,5 +1,5 @@
-// Completion by itself: PEs as Completion objects, their messages in one bag from which a random one
-// is delivered next. The oracle counts the messages of each epoch that are not done.
+// Completion by itself: PEs as Completion objects, their messages in one bag from which a random
+// one is delivered next. The oracle counts the messages of each epoch that are not done.
 #include "runtime/completion/completion.hpp"
 
 #include "runtime/core/hash.hpp"

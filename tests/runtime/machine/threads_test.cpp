@@ -10,7 +10,8 @@
 namespace tess::detail {
 namespace {
 
-/// A PE that always has messages ready, of a millisecond each or of none, and stops after some steps.
+/// A PE that always has messages ready, of a millisecond each or of none, and stops after some
+/// steps.
 class Steps final : public Program {
  public:
   Steps(Machine& machine, std::chrono::milliseconds each, std::size_t n_steps)

@@ -158,7 +158,8 @@ TEST_CASE("the run does not end before what the last call of a periodic timer se
           "[runtime][timers]") {
   LastTick::n_sent = LastTick::n_arrived = 0;
   int n_ticked = 0, n_runs = 0;
-  // Some of the calls come after PE 0 has found that nothing is under way, and before it ends the run.
+  // Some of the calls come after PE 0 has found that nothing is under way, and before it ends the
+  // run.
   for (std::int64_t period_ns = 1000; period_ns < 60'000; period_ns += 100, ++n_runs) {
     const Ending ending = simulate([&] {
       tess::create_group<LastTick>()[tess::PeId{3}].send<&LastTick::begin>(period_ns, 8);

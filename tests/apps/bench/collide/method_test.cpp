@@ -1,4 +1,5 @@
-// The methods of the benchmark: each finds the pairs that brute force finds, whatever library it is.
+// The methods of the benchmark: each finds the pairs that brute force finds, whatever library it
+// is.
 #include "apps/bench/collide/method.hpp"
 
 #include "tests/support/catch.hpp"

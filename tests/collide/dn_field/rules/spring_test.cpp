@@ -1,5 +1,5 @@
-// The spring's motion over one step, compared with the same motion in many short steps. (Where g acts
-// before the contact, the closed form takes the mean velocity of the step: not compared here.)
+// The spring's motion over one step, compared with the same motion in many short steps. (Where g
+// acts before the contact, the closed form takes the mean velocity of the step: not compared here.)
 #include "collide/dn_field/rules/spring.hpp"
 
 #include "tests/support/catch.hpp"
