@@ -20,7 +20,6 @@
 #include "runtime/core/ids.hpp"
 #include "runtime/machine/machine.hpp"
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -52,7 +51,7 @@ class Timers {
   [[nodiscard]] std::uint64_t n_made() const { return n_made_; }
   /// The numbers of new timers are greater than this one: those of the run that a restart goes on
   /// with name none.
-  void begin_behind(std::uint64_t number) { n_made_ = std::max(n_made_, number); }
+  void begin_behind(std::uint64_t number) { n_made_ = number > n_made_ ? number : n_made_; }
 
   /// No tick runs until thaw().
   void freeze();
