@@ -18,7 +18,6 @@
 #include "runtime/core/error.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <fmt/core.h>
 #include <iterator>
 #include <nlohmann/json.hpp>

@@ -4,11 +4,11 @@
 
 namespace tess::detail {
 
-std::string error_prefix() {
+std::string error_heading() {
 #if defined(__GLIBC__)
-  return std::string(program_invocation_short_name) + ": ";
+  return std::string(program_invocation_short_name) + ": error: ";
 #else
-  return {};
+  return "error: ";
 #endif
 }
 

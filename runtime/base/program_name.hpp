@@ -5,7 +5,7 @@
 
 namespace tess::detail {
 
-/// "stencil: "; empty where the system does not say.
-[[nodiscard]] std::string error_prefix();
+/// "stencil: error: "; "error: " where the system does not say the name.
+[[nodiscard]] std::string error_heading();
 
 }  // namespace tess::detail

@@ -1,5 +1,5 @@
-// A lock on which no thread ever waits: a thread that fails to take it leaves its work to the
-// holder or to a later attempt. It guards work that one thread at a time may do and no thread must
+// A lock on which no PE waits for its messages: a thread that fails to take it leaves its work to
+// the holder or to a later attempt. It guards work that one thread at a time may do and no thread must
 // do, such as progress of MPI.
 #pragma once
 

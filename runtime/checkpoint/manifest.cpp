@@ -51,12 +51,15 @@ Manifest parse(const std::string& path, const std::string& text) {
 
 }  // namespace
 
-std::string to_text(const Manifest& manifest, const MainPart& main) {
+void check_note(const std::string& note) {
   try {
-    (void)Json(manifest.note).dump();
+    (void)Json(note).dump();
   } catch (const Json::exception&) {
-    fail(ErrorCode::bad_argument, "the note of a checkpoint is no text in UTF-8: ", manifest.note);
+    fail(ErrorCode::bad_argument, "the note of a checkpoint is no text in UTF-8: ", note);
   }
+}
+
+std::string to_text(const Manifest& manifest, const MainPart& main) {
   Json json;
   json["tessera_checkpoint"] = checkpoint_version;
   json["number"] = manifest.number;

@@ -54,6 +54,8 @@ struct Manifest {
 };
 
 /// The text of a manifest, with a list of the classes for people.
+/// Throws Error for a note that the manifest cannot hold.
+void check_note(const std::string& note);
 [[nodiscard]] std::string to_text(const Manifest& manifest, const MainPart& main);
 void write_manifest(const std::string& folder, const std::string& text);
 /// Throws Error for a manifest that is missing, damaged, or of another version.

@@ -235,6 +235,7 @@ void require_own(const std::string& folder, const Listing& listing,
 }
 
 Manifest next_manifest(Pe& pe, const Listing& before, const CheckpointOptions& options) {
+  check_note(options.note);
   Manifest manifest;
   manifest.number = before.numbers.empty() ? 1 : before.numbers.front() + 1;
   manifest.n_pes = pe.n_pes();

@@ -68,7 +68,7 @@ class MpiMachine final : public Machine, private Network {
       team_->run(program, topology_);
     } catch (const Error& error) {
       if (n_processes_ == 1) throw;
-      std::fprintf(stderr, "%serror: %s\n", error_prefix().c_str(), error.what());
+      std::fprintf(stderr, "%s%s\n", error_heading().c_str(), error.what());
       abort(2);  // the other processes have begun, and would wait for this one
     }
     transport_->drain([&program](Link* message) { program.drop(message); });

@@ -61,8 +61,8 @@ void send_to_each(Pe& pe, const Payload& payload) {
 }
 
 /// The beginning of a line of error, as guarded() writes it. A report of a test has no name.
-std::string error_heading(const RuntimeOptions& options) {
-  return (options.report ? std::string() : error_prefix()) + "error: ";
+std::string heading(const RuntimeOptions& options) {
+  return options.report ? "error: " : error_heading();
 }
 
 std::string context_of_this_thread() {
@@ -106,7 +106,7 @@ int Runtime::run() {
   Registry::seal();
   if (!machine_.agree(Registry::fingerprint())) {
     if (machine_.process().value == 0)
-      error_line(error_heading(options_) +
+      error_line(heading(options_) +
                  "the processes of this job run different programs: start the same build "
                  "everywhere");
     (void)machine_.agree(
@@ -215,15 +215,14 @@ std::string Runtime::describe(Pe& pe) const {
 }
 
 void Runtime::bad_input(Pe& pe, std::string_view what) {
-  if (!said_bad_input_.exchange(true)) error_line(error_heading(options_) + one_line(what));
+  if (!said_bad_input_.exchange(true)) error_line(heading(options_) + one_line(what));
   exit(pe, 2);
 }
 
 void Runtime::out_of_memory(Pe& pe, const std::string& place) {
   if (!said_out_of_memory_.exchange(true)) {
     reserve_.reset();
-    error_line(text(error_heading(options_), "memory is exhausted ",
-                    place.empty() ? describe(pe) : place,
+    error_line(text(heading(options_), "memory is exhausted ", place.empty() ? describe(pe) : place,
                     "; ask for less, or spread the run over more machines"));
   }
   exit(pe, 2);

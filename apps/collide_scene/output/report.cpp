@@ -170,7 +170,6 @@ std::string json(const Report& report) {
                            {"searched", result.steps[i].searched},
                            {"kept", result.steps[i].n_kept},
                            {"seconds", result.steps[i].seconds}});
-  // The name of a file may have any bytes; JSON holds only UTF-8.
   return plot::json_text(out);
 }
 

@@ -132,7 +132,6 @@ std::string json(const Scene& scene, const RunResult& result, const Report& repo
   Json out = document(scene, result, report);
   out["study"] = Json::array();
   for (const StudyRow& row : report.study) out["study"].push_back(json_of(row));
-  // The name of a file may have any bytes; JSON holds only UTF-8.
   return plot::json_text(out);
 }
 

@@ -1,5 +1,6 @@
 #include "m2m/field_file.hpp"
 
+#include "m2m/io/exodus/exodus_turn.hpp"
 #include "m2m/kuhn.hpp"
 #include "m2m/read_mesh.hpp"
 #include "m2m/write_exodus.hpp"
@@ -9,6 +10,7 @@
 #include "tests/m2m/io/gmsh_text.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/shared_data.hpp"
+#include "tests/support/waits_for_turn.hpp"
 
 #include <array>
 #include <exodusII.h>
@@ -246,6 +248,20 @@ TEST_CASE("values of split elements are those of the whole element; skipped ones
   CHECK(file.tet_field(mesh, "rho", 0).values == std::vector<double>{30, 30, 30, 30, 30, 30, 50});
   CHECK_THAT(message_of([&] { (void)file.tet_field(mesh, "q", 0); }),
              Catch::Contains(path + ": variable 'q' is missing in block 5"));
+}
+
+TEST_CASE("readers and writers of ExodusII wait while another thread uses the library",
+          "[m2m][io]") {
+  const Scratch scratch;
+  const std::string path = scratch.path("a.exo");
+  const TetMesh mesh = kuhn_mesh({2});
+  const std::array fields{awkward_field("u", mesh.n_points(), 1, 3)};
+  using tess::test::waits_for_turn;
+  CHECK(waits_for_turn<ExodusTurn>([&] { write_exodus(path, mesh, fields); }));
+  CHECK(waits_for_turn<ExodusTurn>([&] { (void)read_mesh(path); }));
+  CHECK(waits_for_turn<ExodusTurn>([&] { (void)FieldFile(path); }));
+  const FieldFile file(path);
+  CHECK(waits_for_turn<ExodusTurn>([&] { (void)file.vertex_field(mesh, "u", 0); }));
 }
 
 TEST_CASE("scalars that are no vector stay apart", "[m2m][io]") {

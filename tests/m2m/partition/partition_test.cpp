@@ -5,13 +5,10 @@
 #include "runtime/base/mpi_turn.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/scratch.hpp"
+#include "tests/support/waits_for_turn.hpp"
 
 #include <algorithm>
-#include <atomic>
-#include <chrono>
 #include <cmath>
-#include <memory>
-#include <thread>
 
 using namespace tess::m2m;
 using tess::test::message_of;
@@ -43,17 +40,9 @@ TEST_CASE("parts are balanced, and the same in every call", "[m2m][partition]") 
 
 TEST_CASE("a partition waits until no other thread is in MPI", "[m2m][partition]") {
   const TetMesh mesh = kuhn_mesh({3});
-  auto held = std::make_unique<tess::detail::MpiTurn>();
-  std::atomic<bool> is_done{false};
-  std::thread other([&] {
-    (void)partition(mesh, 2, PartitionMethod::rcb);
-    is_done = true;
-  });
-  std::this_thread::sleep_for(std::chrono::milliseconds(100));
-  CHECK_FALSE(is_done);
-  held.reset();
-  other.join();
-  CHECK(is_done);
+  const auto cut = [&] { (void)partition(mesh, 2, PartitionMethod::rcb); };
+  cut();  // it initialises MPI, which takes long
+  CHECK(tess::test::waits_for_turn<tess::detail::MpiTurn>(cut));
 }
 
 TEST_CASE("a split has every tetrahedron once, and one owner per vertex, which lists the ghosts",
