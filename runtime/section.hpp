@@ -37,8 +37,7 @@ class SectionProxy {
     static_assert(detail::check_broadcast<C, F, Args...>());
     using Arguments = typename detail::EntryTraits<F>::Arguments;
     using Lists = detail::SectionListsOf<typename C::Index>;
-    TESS_CHECK(array_ != CollectionId{}, "a broadcast to an empty SectionProxy<", name_of_type<C>,
-               ">: assign create_section() to it first");
+    require_section("a broadcast to");
     Pe& pe = current_pe();
     detail::SectionCall call;
     call.numbered.epoch = pe.context().epoch;
@@ -52,7 +51,10 @@ class SectionProxy {
   /// Ends the section: it frees what it holds on every PE; its members stay. What is still under
   /// way to it is dropped: multicasts and contributions. The current epoch waits until all PEs have
   /// freed it. Ending a section again has no effect.
-  void destroy() const { detail::end_section(array_, id_); }
+  void destroy() const {
+    require_section("destroy() of");
+    detail::end_section(array_, id_);
+  }
 
   /// A target for results: entry method F of all members.
   template <auto F>
@@ -70,6 +72,10 @@ class SectionProxy {
  private:
   template <class>
   friend class detail::TessContributor;
+  void require_section(const char* use) const {
+    TESS_CHECK(array_ != CollectionId{}, use, " an empty SectionProxy<", name_of_type<C>,
+               ">: assign create_section() to it first");
+  }
   [[nodiscard]] PeId root(const Pe& pe) const {
     return detail::root_of(CollectionId{id_.value}, pe.n_pes());
   }

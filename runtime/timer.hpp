@@ -42,7 +42,7 @@ class Timer {
   /// Ends the timer. On its own PE it is never called again; from another PE it may be called until
   /// this request arrives. The epoch of a timer that runs once no longer waits for it. Cancelling
   /// it again, or a timer that has run, or one of the run before a restart, or a Timer() that names
-  /// none, has no effect.
+  /// none, has no effect. (One of an earlier run() may name a timer of this one.)
   void cancel() const {
     if (number_ != 0) detail::cancel_timer(pe_, number_);
   }

@@ -284,6 +284,15 @@ class Stranger : public tess::Chare<Stranger> {
   void serialize(Ar& /*ar*/) {}
 };
 
+/// Of a section with an element that never comes.
+tess::Task sum_with_a_missing_member() {
+  const auto all = tess::create<Stranger>(tess::range(3));
+  const auto section = tess::create_section(all, {{0}, {6}});
+  tess::Future<int> sum;
+  all[{0}].send<&Stranger::vote>(section, sum.callback());
+  (void)co_await sum;
+}
+
 /// Of the section {0, 2, 4}. A result would end the run without an error.
 tess::Task votes_of(std::vector<int> voters) {
   const auto all = tess::create<Stranger>(tess::range(12));
@@ -464,6 +473,8 @@ const std::map<std::string, std::function<void()>> misuses{
        (void)tess::create_section(blocks(), {{0}, {2}, {0}});
      }},
     {"section_empty", [] { tess::SectionProxy<Block>().broadcast<&Block::nothing>(); }},
+    {"section_empty_ends", [] { tess::SectionProxy<Block>().destroy(); }},
+    {"section_without_element", [] { const tess::Task task = sum_with_a_missing_member(); }},
     {"section_of_another", [] { const tess::Task task = vote_elsewhere(); }},
     {"short_element", &carry<Short>},
     {"long_element", &carry<Long>},

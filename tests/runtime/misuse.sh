@@ -94,6 +94,8 @@ everywhere place_77 "place() of .*Placed<77> puts the element \[4\] on PE 77, bu
 here place_-2 "place() of .*Placed<-2> puts the element \[0\] on PE -2, but the run has 2 PEs"
 here section_twice "the list of a section of .*Block has the index \[0\] twice"
 here section_empty "a broadcast to an empty SectionProxy<.*Block>: assign create_section() to it first"
+here section_empty_ends "destroy() of an empty SectionProxy<.*Block>: assign create_section() to it first"
+everywhere section_without_element "waits for a future of int" "1 message (of the runtime, as for a section with it) on PE . to .*Stranger\[6\], which does not exist"
 here section_of_another "Voter\[1\] contributes to a section of another array"
 # What reads other bytes than it wrote, between processes. (With TESS_CHECKS=all it is found where it is sent.)
 for kind in short long; do

@@ -49,7 +49,7 @@ Inside::Inside(Surface surface, const Bvh& tree, const Grid& grid)
 }
 
 /// Adds to `change` what the winding number changes by at each voxel of each line.
-void Inside::count_crossings(std::uint32_t triangle, int k, std::span<std::int16_t> change) const {
+void Inside::count_crossings(std::uint32_t triangle, int k, std::span<std::int32_t> change) const {
   const auto [ia, ib, ic] = surface_.triangles[triangle];
   const auto [a, b, c] = surface_.corners(triangle);
   const Vec3 normal = cross(b - a, c - a);
@@ -64,7 +64,7 @@ void Inside::count_crossings(std::uint32_t triangle, int k, std::span<std::int16
     const double x = a.x - (normal.y * (p.y - a.y) + normal.z * (p.z - a.z)) / normal.x;
     const double voxel = std::clamp(std::ceil((x - grid_.origin.x) / grid_.cell), 0.0, 1.0 * nx);
     change[static_cast<std::size_t>(j) * (static_cast<std::size_t>(nx) + 1) +
-           static_cast<std::size_t>(voxel)] -= static_cast<std::int16_t>(s);
+           static_cast<std::size_t>(voxel)] -= s;
   }
 }
 
@@ -72,7 +72,7 @@ void Inside::layer(int k, std::span<std::uint8_t> inside) const {
   const auto [nx, ny, nz] = grid_.n;
   const auto line_size = static_cast<std::size_t>(nx) + 1;
   // The last entry of a line counts crossings behind its last voxel.
-  std::vector<std::int16_t> change(static_cast<std::size_t>(ny) * line_size, 0);
+  std::vector<std::int32_t> change(static_cast<std::size_t>(ny) * line_size, 0);
   if (closed_)
     for (auto i = begin_[static_cast<std::size_t>(k)]; i < begin_[static_cast<std::size_t>(k) + 1];
          ++i)
@@ -80,7 +80,7 @@ void Inside::layer(int k, std::span<std::uint8_t> inside) const {
   for (int j = 0; j < ny; ++j) {
     const auto line = std::span(change).subspan(static_cast<std::size_t>(j) * line_size, line_size);
     int winding = 0;
-    for (std::int16_t& at : line) at = static_cast<std::int16_t>(winding += at);
+    for (std::int32_t& at : line) at = winding += at;
     // A count that does not end at zero lost a crossing to rounding.
     const bool is_known = closed_ && winding == 0;
     for (int i = 0; i < nx; ++i)

@@ -23,7 +23,7 @@ class Inside {
   void layer(int k, std::span<std::uint8_t> inside) const;
 
  private:
-  void count_crossings(std::uint32_t triangle, int k, std::span<std::int16_t> change) const;
+  void count_crossings(std::uint32_t triangle, int k, std::span<std::int32_t> change) const;
 
   Surface surface_;
   const Bvh& tree_;

@@ -273,9 +273,12 @@ void ArrayOf<Index>::describe_waiting(std::vector<std::string>& lines) const {
   const auto say = [&](const Index& index, const std::vector<CallMessage*>& messages,
                        const char* what) {
     if (messages.empty()) return;
+    const Action& action = *messages.front()->action;
+    const std::string first = action.traffic == Traffic::control
+                                  ? "of the runtime, as for a section with it"
+                                  : plain_name(action.name());
     lines.push_back(text(messages.size(), messages.size() == 1 ? " message" : " messages", " (",
-                         plain_name(messages.front()->action->name()), ") on ", pe_.id(), " to ",
-                         name(), index_text(index), ", ", what));
+                         first, ") on ", pe_.id(), " to ", name(), index_text(index), ", ", what));
   };
   for (const auto& [index, messages] : waiting_) say(index, messages, "which does not exist");
   for (const auto& [index, messages] : pending_)
