@@ -207,6 +207,11 @@ Task AnyCoupling::search(SearchSummary* summary) {
   } else {
     co_await find_donors(found);
   }
+  // They are outside, so all source pieces have been named.
+  if (found.n_alone > 0 && found.least_source)
+    co_await epoch([&, source = *found.least_source] {
+      state.setup.target.broadcast<&AnyPiece::m2m_attach_if_alone>(state.setup.id, source);
+    });
   if (summary != nullptr)
     *summary = {seconds(broad - start), seconds(now() - broad), found.tally, found.worst};
 }
@@ -245,6 +250,7 @@ Task AnyCoupling::find_donors(LedgerPage& found) {
   co_await close_page(setup.ledger, &page);
   std::sort(page.sources.begin(), page.sources.end(),
             [](const SourcePiece& a, const SourcePiece& b) { return a.owner < b.owner; });
+  if (!page.sources.empty()) found.least_source = page.sources.front().owner;
   co_await epoch(
       [&] { setup.target.broadcast<&AnyPiece::m2m_ask_nearest>(setup.id, page.sources); });
   co_await close_page(setup.ledger, &page);

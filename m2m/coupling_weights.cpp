@@ -40,7 +40,8 @@ WeightMatrix matrix_of(const GlobalRows& rows, std::int64_t n_sources, std::int6
     check("target", target, n_targets);
     if (target < next)
       fail(ErrorCode::bad_value, "two target vertices have the id ", target,
-           "; number the vertices of all pieces together");
+           "; number the vertices of all pieces together, and show them with view_of(): for a "
+           "MeshPiece ghosts are targets, too");
     for (; next < target; ++next) matrix.rows.end_row();
     for (std::uint64_t k = begin[i]; k < begin[i + 1]; ++k) {
       check("source", rows.columns[k], n_sources);

@@ -26,7 +26,7 @@ FileBytes::FileBytes(const std::string& path) {
   size_ = static_cast<std::size_t>(status.st_size);
   if (size_ == 0) {
     ::close(descriptor);
-    fail(ErrorCode::bad_file, path, ": is empty; write the mesh again");
+    fail(ErrorCode::bad_file, path, ": is empty; write the file again");
   }
   void* const bytes = ::mmap(nullptr, size_, PROT_READ, MAP_PRIVATE, descriptor, 0);
   const int error = errno;

@@ -24,6 +24,7 @@ void AnyPiece::m2m_submit_source(const CouplingSetup& setup) {
   SourceSide& from = m2m_sides().sources[setup.id];
   from.setup = setup;
   setup.collider.submit_early({m2m_owner(), source_model, from.start_search(m2m_view())});
+  m2m_sides().attached.erase(setup.id);
   if (from.has_kept_cover()) setup.ledger.local().add(Tally{.n_kept_sources = 1});
 }
 void AnyPiece::m2m_submit_target(const CouplingSetup& setup) {
@@ -91,6 +92,19 @@ void AnyPiece::m2m_ask_on(TargetSide& to) {
     m2m_send<&AnyPiece::m2m_choose>(to.setup.source, source, std::move(choice));
   to.setup.ledger.local().add(to.tally());
   to.setup.ledger.local().add(to.worst());
+  if (is_alone(to)) to.setup.ledger.local().add_alone();
+}
+void AnyPiece::m2m_attach_if_alone(CouplingId id, collide::OwnerId source) {
+  const auto attach = [&](const auto& to) {
+    if (is_alone(to)) to.setup.source.template send<&AnyPiece::m2m_attach>(source, id, m2m_owner());
+  };
+  if (m2m_sides().is_conservative_target(id))
+    attach(m2m_sides().overlap_target(id));
+  else
+    attach(m2m_sides().target(id));
+}
+void AnyPiece::m2m_attach(CouplingId id, collide::OwnerId target) {
+  m2m_sides().attached[id].push_back(target);
 }
 
 void AnyPiece::m2m_give_values(CouplingId id, detail::Giver give, detail::Taker take) {
@@ -106,6 +120,16 @@ void AnyPiece::m2m_give_values(CouplingId id, detail::Giver give, detail::Taker 
   from.give(mesh, values, take, [&](collide::OwnerId target, GivenValues given) {
     m2m_send<&AnyPiece::m2m_take>(from.setup.target, target, std::move(given));
   });
+}
+void AnyPiece::m2m_give_round(CouplingId id, detail::Giver give, detail::Taker take) {
+  m2m_give_values(id, give, take);
+  const auto at = m2m_sides().attached.find(id);
+  if (at == m2m_sides().attached.end()) return;
+  const PieceArray& targets = m2m_sides().is_conservative_source(id)
+                                  ? m2m_sides().overlap_source(id).setup.target
+                                  : m2m_sides().source(id).setup.target;
+  for (const collide::OwnerId target : at->second)
+    targets.send<&AnyPiece::m2m_take_if_alone>(target, id, take);
 }
 void AnyPiece::m2m_take_if_alone(CouplingId id, detail::Taker take) {
   const auto fill = [&](const auto& to) {

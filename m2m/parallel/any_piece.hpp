@@ -11,6 +11,7 @@
 //   outside    its nearest vertex       ← NearestQuery  if the policy says so
 //                                       NearestAnswer →
 //   choose     keeps what was chosen    ← Choice        decides
+//   attach     remembers it             ←               if no source piece gives it values
 //   give       interpolates             GivenValues →   writes a round that is complete
 //
 // For conservative couplings it is in OverlapSource and OverlapTarget (overlap_messages.hpp):
@@ -90,6 +91,8 @@ class AnyPiece {
   void m2m_answer_nearest(NearestQuery query);
   void m2m_receive_nearest(const NearestAnswer& answer);
   void m2m_choose(Choice choice);
+  void m2m_attach_if_alone(CouplingId id, collide::OwnerId source);
+  void m2m_attach(CouplingId id, collide::OwnerId target);
 
   // Of a conservative search.
   void m2m_submit_overlap_source(const CouplingSetup& setup);
@@ -105,7 +108,9 @@ class AnyPiece {
   void m2m_greet(CouplingId id, collide::OwnerId neighbour);
 
   // Of an application. The k-th call of every source piece belongs to the k-th round; a target
-  // piece gets a round when it is complete. A piece without sources has nothing to wait for.
+  // piece gets a round when it is complete. A piece without sources has nothing to wait for: an
+  // application by the handle reaches it directly, and a round of pieces through the one source
+  // piece that it is attached to.
   void m2m_give_values(CouplingId id, detail::Giver give, detail::Taker take);
   void m2m_take_if_alone(CouplingId id, detail::Taker take);
   void m2m_take(GivenValues given);
@@ -120,6 +125,8 @@ class AnyPiece {
  protected:
   AnyPiece() = default;
   virtual ~AnyPiece() = default;
+  /// Gives values, and announces the round to the target pieces that are attached to this one.
+  void m2m_give_round(CouplingId id, detail::Giver give, detail::Taker take);
 
  private:
   [[nodiscard]] virtual MeshView m2m_view() const = 0;

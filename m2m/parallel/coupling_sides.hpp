@@ -8,14 +8,22 @@
 #include "m2m/parallel/target_side.hpp"
 
 #include <map>
+#include <vector>
 
 namespace tess::m2m {
+
+/// True if a target piece has places for values, but no source piece gives it any.
+[[nodiscard]] bool is_alone(const auto& target_side) {
+  return target_side.n_sources() == 0 && !target_side.status().empty();
+}
 
 struct CouplingSides {
   std::map<CouplingId, SourceSide> sources{};
   std::map<CouplingId, TargetSide> targets{};
   std::map<CouplingId, OverlapSource> overlap_sources{};
   std::map<CouplingId, OverlapTarget> overlap_targets{};
+  /// Target pieces without sources, which hear of each round from this source piece.
+  std::map<CouplingId, std::vector<collide::OwnerId>> attached{};
 
   [[nodiscard]] bool is_conservative_source(CouplingId id) const {
     return overlap_sources.contains(id);
@@ -32,7 +40,7 @@ struct CouplingSides {
 
   template <class Ar>
   void serialize(Ar& ar) {
-    ar(sources, targets, overlap_sources, overlap_targets);
+    ar(sources, targets, overlap_sources, overlap_targets, attached);
   }
 };
 

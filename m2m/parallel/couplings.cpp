@@ -23,7 +23,9 @@ template <class Sides>
 auto& side_of(Sides& sides, CouplingId id, const char* side) {
   const auto at = sides.find(id);
   TESS_CHECK(at != sides.end(), "this piece is no ", side,
-             " of the coupling: await search() first, and serialise `couplings` if pieces migrate");
+             " of the coupling: await search() first, use it before its destroy(), and serialise "
+             "`couplings` if pieces "
+             "migrate");
   return at->second;
 }
 
@@ -47,6 +49,7 @@ void CouplingSides::release(CouplingId id) {
   targets.erase(id);
   overlap_sources.erase(id);
   overlap_targets.erase(id);
+  attached.erase(id);
 }
 
 }  // namespace tess::m2m

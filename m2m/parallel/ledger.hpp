@@ -9,6 +9,7 @@
 #include "runtime/runtime.hpp"
 
 #include <cstdint>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -27,13 +28,20 @@ struct LedgerPage {
   WorstPlaces worst;
   std::uint64_t n_waiting = 0;  ///< target pieces with points that need the nearest vertex
   std::vector<SourcePiece> sources;
+  std::uint64_t n_alone = 0;                     ///< target pieces without sources
+  std::optional<collide::OwnerId> least_source;  ///< of all source pieces
 
   LedgerPage& operator+=(const LedgerPage& other) {
     tally += other.tally;
     worst += other.worst;
     n_waiting += other.n_waiting;
     sources.insert(sources.end(), other.sources.begin(), other.sources.end());
+    n_alone += other.n_alone;
+    if (other.least_source) take_source(*other.least_source);
     return *this;
+  }
+  void take_source(collide::OwnerId owner) {
+    if (!least_source || owner < *least_source) least_source = owner;
   }
 };
 /// Joins the pages of all PEs.
@@ -51,6 +59,8 @@ class Ledger : public Group<Ledger> {
   void add(const WorstPlaces& worst) { page_.worst += worst; }
   void add(const SourcePiece& source) { page_.sources.push_back(source); }
   void add_waiting() { ++page_.n_waiting; }
+  void add_alone() { ++page_.n_alone; }
+  void add_source(collide::OwnerId owner) { page_.take_source(owner); }
 
   /// Entry method: gives the sums since the last call.
   void close_page(Callback<LedgerPage> target) {

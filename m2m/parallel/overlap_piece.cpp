@@ -11,6 +11,8 @@ void AnyPiece::m2m_submit_overlap_source(const CouplingSetup& setup) {
   OverlapSource& from = m2m_sides().overlap_sources[setup.id];
   from.setup = setup;
   setup.collider.submit({m2m_owner(), source_model, from.start_search(m2m_view())});
+  m2m_sides().attached.erase(setup.id);
+  setup.ledger.local().add_source(m2m_owner());
 }
 void AnyPiece::m2m_submit_overlap_target(const CouplingSetup& setup) {
   OverlapTarget& to = m2m_sides().overlap_targets[setup.id];
@@ -63,6 +65,7 @@ void AnyPiece::m2m_finish_search(CouplingId id) {
   for (const collide::OwnerId piece : to.finish_search(m2m_view()))
     to.setup.target.send<&AnyPiece::m2m_greet>(piece, id, m2m_owner());
   to.setup.ledger.local().add(to.tally());
+  if (is_alone(to)) to.setup.ledger.local().add_alone();
 }
 void AnyPiece::m2m_greet(CouplingId id, collide::OwnerId neighbour) {
   m2m_sides().overlap_target(id).add_neighbour(neighbour);

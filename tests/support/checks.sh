@@ -10,6 +10,9 @@ set -uo pipefail
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 mpirun_options=(--allow-run-as-root --oversubscribe)
+# What mpirun waits for, and no test looks at: networks to answer when a job starts (.2 s), and the processes of a job that
+# fails to end by themselves (2 s; signals.sh does look at that).
+export OMPI_MCA_pml=ob1 OMPI_MCA_btl=self,vader OMPI_MCA_odls_base_sigkill_timeout=0
 mpirun=(mpirun -q "${mpirun_options[@]}")  # -q: mpirun's own messages are not printed
 passed=0
 failed=0

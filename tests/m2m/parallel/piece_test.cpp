@@ -5,6 +5,8 @@
 #include "runtime/machine/simulated.hpp"
 #include "tests/support/catch.hpp"
 
+#include <algorithm>
+#include <cstdint>
 #include <type_traits>
 #include <vector>
 
@@ -47,9 +49,14 @@ class Counted : public Chare<Counted, Index1>, public Piece<Counted> {
   [[nodiscard]] std::span<double> take() {
     return std::span(values_).first(static_cast<std::size_t>(part_.n_owned));
   }
+  void start_round(CouplingId id) { m2m_give<Counted, &Counted::give, &Counted::take>(id); }
   void received(CouplingId /*coupling*/) { self().send<&Counted::count>(); }
   void count() { n_received_ += sides(project(ask_on(1))); }
   void total(Callback<int> target) { contribute(sum, n_received_, std::move(target)); }
+  /// Of the points that the piece owns.
+  void count_equal(double value, Callback<std::int64_t> target) {
+    contribute(sum, std::int64_t{std::ranges::count(take(), value)}, std::move(target));
+  }
 
   template <class Ar>
   void serialize(Ar& ar) {
@@ -62,9 +69,12 @@ class Counted : public Chare<Counted, Index1>, public Piece<Counted> {
   int n_received_ = 0;
 };
 
-ArrayProxy<Counted> counted(std::int32_t n) {
+/// Pieces of the box 0 ≤ x < length.
+ArrayProxy<Counted> counted(std::int32_t n, double length = 1) {
   const auto array = create<Counted>(range(n));
-  const auto parts = mesh_parts(kuhn_mesh({3}), n, PartitionMethod::curve);
+  TetMesh mesh = kuhn_mesh({3});
+  for (Point& p : mesh.points) p[0] *= length;
+  const auto parts = mesh_parts(mesh, n, PartitionMethod::curve);
   for (std::int32_t k = 0; k < n; ++k)
     array[{k}].send<&Counted::load>(parts[static_cast<std::size_t>(k)]);
   return array;
@@ -81,7 +91,44 @@ Task apply_three_times(int& n_received) {
   n_received = co_await total;
 }
 
+/// Most pieces of the target are outside of the source.
+Task give_three_rounds(int& n_received, std::int64_t& n_filled, std::uint64_t& n_outside) {
+  ArrayProxy<Counted> source, target;
+  co_await epoch([&] { source = counted(2, 0.1), target = counted(8); });
+  CouplingOptions options;
+  options.policy = UseValue{42};
+  Coupling coupling(source, target, options);
+  SearchSummary summary;
+  for (int k = 0; k < 2; ++k) co_await coupling.search(&summary);
+  n_outside = summary.tally.count(Status::outside);
+  co_await epoch([&] {
+    for (int k = 0; k < 3; ++k) source.broadcast<&Counted::start_round>(coupling.id());
+  });
+  Future<int> total;
+  target.broadcast<&Counted::total>(total.callback());
+  n_received = co_await total;
+  Future<std::int64_t> filled;
+  target.broadcast<&Counted::count_equal>(42.0, filled.callback());
+  n_filled = co_await filled;
+}
+
 }  // namespace
+
+TEST_CASE("a round that pieces start reaches those that no source piece gives values", "[m2m]") {
+  for (const std::int32_t n_pes : {1, 3}) {
+    int n_received = 0;
+    std::int64_t n_filled = 0;
+    std::uint64_t n_outside = 0;
+    SimulatedOptions machine;
+    machine.n_pes = n_pes;
+    Setup setup{make_simulated_machine(machine), {}};
+    const auto main = [&]() -> Task { return give_three_rounds(n_received, n_filled, n_outside); };
+    REQUIRE(run(setup, main) == 0);
+    CHECK(n_received == 3 * 8);
+    CHECK(n_outside > 0);
+    CHECK(n_filled == static_cast<std::int64_t>(n_outside));
+  }
+}
 
 TEST_CASE("a piece sends to itself as any chare does", "[m2m]") {
   int n_received = 0;

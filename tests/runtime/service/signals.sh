@@ -4,6 +4,7 @@
 #
 #     signals.sh PROGRAM [MPIEXEC]
 source "$(dirname "$0")/../../support/running_job.sh"
+export OMPI_MCA_odls_base_sigkill_timeout=1
 
 pids() { sed -n 's/^PE .* pid //p' "$scratch/out" | sort -u; }
 # A process that has ended may wait for mpirun to take note of it.
