@@ -24,8 +24,7 @@ auto& side_of(Sides& sides, CouplingId id, const char* side) {
   const auto at = sides.find(id);
   TESS_CHECK(at != sides.end(), "this piece is no ", side,
              " of the coupling: await search() first, use it before its destroy(), and serialise "
-             "`couplings` if pieces "
-             "migrate");
+             "`couplings` if pieces migrate");
   return at->second;
 }
 
