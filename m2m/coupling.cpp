@@ -207,7 +207,8 @@ Task AnyCoupling::search(SearchSummary* summary) {
   } else {
     co_await find_donors(found);
   }
-  // They are outside, so all source pieces have been named.
+  // Source pieces of conservative kinds have entered their names; otherwise the points of such
+  // target pieces are outside, so that all source pieces were named.
   if (found.n_alone > 0 && found.least_source)
     co_await epoch([&, source = *found.least_source] {
       state.setup.target.broadcast<&AnyPiece::m2m_attach_if_alone>(state.setup.id, source);

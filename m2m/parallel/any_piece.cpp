@@ -8,16 +8,14 @@
 namespace tess::m2m {
 
 std::span<const Status> AnyPiece::status(CouplingId id) const {
-  return m2m_sides().is_conservative_target(id) ? m2m_sides().overlap_target(id).status()
-                                                : m2m_sides().target(id).status();
+  return m2m_sides().with_target(id, [](const auto& to) { return to.status(); });
 }
 std::span<const double> AnyPiece::distance(CouplingId id) const {
   if (m2m_sides().is_conservative_target(id)) return {};
   return m2m_sides().target(id).distance();
 }
 const OutsidePolicy& AnyPiece::policy(CouplingId id) const {
-  return m2m_sides().is_conservative_target(id) ? m2m_sides().overlap_target(id).setup.policy
-                                                : m2m_sides().target(id).setup.policy;
+  return *m2m_sides().with_target(id, [](const auto& to) { return &to.setup.policy; });
 }
 
 void AnyPiece::m2m_submit_source(const CouplingSetup& setup) {
@@ -33,10 +31,7 @@ void AnyPiece::m2m_submit_target(const CouplingSetup& setup) {
   setup.collider.submit_early({m2m_owner(), target_model, to.start_search(m2m_view())});
 }
 void AnyPiece::m2m_hits(CouplingId id, const collide::Hits& hits) {
-  if (m2m_sides().is_conservative_target(id))
-    m2m_sides().overlap_target(id).add(hits);
-  else
-    m2m_sides().target(id).add(hits);
+  m2m_sides().with_target(id, [&](auto& to) { to.add(hits); });
 }
 
 void AnyPiece::m2m_ask(CouplingId id) {
@@ -95,13 +90,9 @@ void AnyPiece::m2m_ask_on(TargetSide& to) {
   if (is_alone(to)) to.setup.ledger.local().add_alone();
 }
 void AnyPiece::m2m_attach_if_alone(CouplingId id, collide::OwnerId source) {
-  const auto attach = [&](const auto& to) {
+  m2m_sides().with_target(id, [&](const auto& to) {
     if (is_alone(to)) to.setup.source.template send<&AnyPiece::m2m_attach>(source, id, m2m_owner());
-  };
-  if (m2m_sides().is_conservative_target(id))
-    attach(m2m_sides().overlap_target(id));
-  else
-    attach(m2m_sides().target(id));
+  });
 }
 void AnyPiece::m2m_attach(CouplingId id, collide::OwnerId target) {
   m2m_sides().attached[id].push_back(target);
@@ -125,22 +116,16 @@ void AnyPiece::m2m_give_round(CouplingId id, detail::Giver give, detail::Taker t
   m2m_give_values(id, give, take);
   const auto at = m2m_sides().attached.find(id);
   if (at == m2m_sides().attached.end()) return;
-  const PieceArray& targets = m2m_sides().is_conservative_source(id)
-                                  ? m2m_sides().overlap_source(id).setup.target
-                                  : m2m_sides().source(id).setup.target;
+  const PieceArray& targets = m2m_sides().targets_of(id);
   for (const collide::OwnerId target : at->second)
     targets.send<&AnyPiece::m2m_take_if_alone>(target, id, take);
 }
 void AnyPiece::m2m_take_if_alone(CouplingId id, detail::Taker take) {
-  const auto fill = [&](const auto& to) {
+  m2m_sides().with_target(id, [&](const auto& to) {
     if (to.n_sources() != 0) return;
     fill_outside(to.setup.policy, to.status(), take->show(*this, id));
     m2m_received(id);
-  };
-  if (m2m_sides().is_conservative_target(id))
-    fill(m2m_sides().overlap_target(id));
-  else
-    fill(m2m_sides().target(id));
+  });
 }
 void AnyPiece::m2m_take(GivenValues given) {
   const CouplingId id = given.coupling;

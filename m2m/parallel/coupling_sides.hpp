@@ -36,6 +36,15 @@ struct CouplingSides {
   [[nodiscard]] TargetSide& target(CouplingId id);
   [[nodiscard]] OverlapSource& overlap_source(CouplingId id);
   [[nodiscard]] OverlapTarget& overlap_target(CouplingId id);
+  /// Calls visit(side) with the target side, whichever kind it is of.
+  template <class Visit>
+  auto with_target(CouplingId id, const Visit& visit) {
+    return is_conservative_target(id) ? visit(overlap_target(id)) : visit(target(id));
+  }
+  /// The target of a coupling that this piece is a source of.
+  [[nodiscard]] const PieceArray& targets_of(CouplingId id) {
+    return is_conservative_source(id) ? overlap_source(id).setup.target : source(id).setup.target;
+  }
   void release(CouplingId id);
 
   template <class Ar>

@@ -1,6 +1,6 @@
 // A lock on which no PE waits for its messages: a thread that fails to take it leaves its work to
-// the holder or to a later attempt. It guards work that one thread at a time may do and no thread must
-// do, such as progress of MPI.
+// the holder or to a later attempt. It guards work that one thread at a time may do and no thread
+// must do, such as progress of MPI.
 #pragma once
 
 #include <atomic>

@@ -53,9 +53,9 @@ struct Manifest {
   std::vector<FileSum> files;  ///< of PE 0, 1, …, and at last "main"
 };
 
-/// The text of a manifest, with a list of the classes for people.
-/// Throws Error for a note that the manifest cannot hold.
+/// Throws Error for a note that a manifest cannot hold.
 void check_note(const std::string& note);
+/// The text of a manifest, with a list of the classes for people.
 [[nodiscard]] std::string to_text(const Manifest& manifest, const MainPart& main);
 void write_manifest(const std::string& folder, const std::string& text);
 /// Throws Error for a manifest that is missing, damaged, or of another version.

@@ -31,7 +31,7 @@ says() {
     head -8 "$out"
   fi
 }
-# everywhere MISUSE PATTERN…; here: without mpirun, which takes a second to start.
+# everywhere MISUSE PATTERN…; here: without mpirun, which takes longest.
 here() {
   says threads "$@"
   says simulated "$@"

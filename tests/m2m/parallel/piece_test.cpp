@@ -3,7 +3,9 @@
 #include "m2m/kuhn.hpp"
 #include "m2m/mesh_parts.hpp"
 #include "runtime/machine/simulated.hpp"
+#include "runtime/testing.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/n_seeds.hpp"
 
 #include <algorithm>
 #include <cstdint>
@@ -115,19 +117,17 @@ Task give_three_rounds(int& n_received, std::int64_t& n_filled, std::uint64_t& n
 }  // namespace
 
 TEST_CASE("a round that pieces start reaches those that no source piece gives values", "[m2m]") {
-  for (const std::int32_t n_pes : {1, 3}) {
+  test::for_seeds(0, test::n_seeds(50), [](std::uint64_t seed) {
     int n_received = 0;
     std::int64_t n_filled = 0;
     std::uint64_t n_outside = 0;
-    SimulatedOptions machine;
-    machine.n_pes = n_pes;
-    Setup setup{make_simulated_machine(machine), {}};
-    const auto main = [&]() -> Task { return give_three_rounds(n_received, n_filled, n_outside); };
-    REQUIRE(run(setup, main) == 0);
-    CHECK(n_received == 3 * 8);
-    CHECK(n_outside > 0);
-    CHECK(n_filled == static_cast<std::int64_t>(n_outside));
-  }
+    const test::Machine machine{.pes = 1 + static_cast<int>(seed % 5), .seed = seed};
+    machine.run([&]() -> Task { return give_three_rounds(n_received, n_filled, n_outside); })
+        .require_success();
+    REQUIRE(n_received == 3 * 8);
+    REQUIRE(n_outside > 0);
+    REQUIRE(n_filled == static_cast<std::int64_t>(n_outside));
+  });
 }
 
 TEST_CASE("a piece sends to itself as any chare does", "[m2m]") {
