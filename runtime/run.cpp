@@ -164,6 +164,7 @@ MachineChoice take_values(int& argc, char** argv, RuntimeOptions& options) {
     } else if (takes_value("--message-memory")) {
       options.messages.memory_bytes = memory_size("--message-memory", value);
     } else if (takes_value("--trace")) {
+      if (value.empty()) fail(ErrorCode::bad_argument, "--trace needs the name of a file");
       options.trace = value;
     } else if (takes_value("--monitor")) {
       monitor = value;

@@ -102,17 +102,21 @@ void Runtime::watch(ProcessMonitor& monitor) {
   for (const auto& pe : pes_) pe->start_idle_time();
 }
 
+int Runtime::refuse_job(std::string_view why) {
+  if (machine_.process().value == 0) error_line(heading(options_) + std::string(why));
+  // A process that leaves ends the others: wait until the line is printed.
+  (void)machine_.agree(0);
+  return 2;
+}
+
 int Runtime::run() {
   Registry::seal();
-  if (!machine_.agree(Registry::fingerprint())) {
-    if (machine_.process().value == 0)
-      error_line(heading(options_) +
-                 "the processes of this job run different programs: start the same build "
-                 "everywhere");
-    (void)machine_.agree(
-        0);  // a process that leaves ends the others: wait until the line is printed
-    return 2;
-  }
+  if (!machine_.agree(Registry::fingerprint()))
+    return refuse_job(
+        "the processes of this job run different programs: start the same build "
+        "everywhere");
+  if (!machine_.agree(options_.audit ? 1 : 0))
+    return refuse_job("only some processes of this job were given --audit: give it to all");
   if (!options_.trace.empty()) require_writable_trace(trace_path());
   machine_.run(*this);
   write_traces();

@@ -159,6 +159,8 @@ class Runtime final : public Program {
   void on_virtual_tick(Pe& pe, std::uint64_t n_before, std::int64_t since_ns, std::uint32_t n_late);
 
  private:
+  /// All processes of a job that cannot run call it: process 0 prints why. Returns the exit code.
+  [[nodiscard]] int refuse_job(std::string_view why);
   void start_virtual_watch(Pe& pe);
   void report_virtual_hang(Time now, Time idle);
   void end_with(Pe& pe, int code, int signal = 0);

@@ -40,6 +40,7 @@ refuses missing.exo "${transfer[@]}" "$scratch/missing.exo" kuhn:2
 refuses empty.exo "${transfer[@]}" kuhn:2 "$scratch/empty.exo"
 refuses nan.msh "${transfer[@]}" kuhn:2 "$scratch/nan.msh"
 refuses none.msh "${transfer[@]}" "$scratch/none.msh" kuhn:2
+refuses "trace needs the name of a file" "${transfer[@]}" kuhn:2 kuhn:2 --trace=
 refuses short.msh "${transfer[@]}" "$scratch/short.msh" kuhn:2
 refuses kuhn:0 "${transfer[@]}" kuhn:0 kuhn:2
 refuses --pes "${transfer[@]}" kuhn:2 kuhn:2 --pes 0

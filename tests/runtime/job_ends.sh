@@ -62,6 +62,7 @@ ends 7 "" -n 2 "$job" move --pes 2
 ends 2 "different programs" -n 1 "$job" exit --pes 1 : -n 1 "$other" exit --pes 1
 once "different programs"
 ends 2 "different numbers of PEs" -n 1 "$job" exit --pes 1 : -n 1 "$job" exit --pes 2
+ends 2 "only some processes of this job were given --audit" -n 1 "$job" exit --pes 1 --audit : -n 1 "$job" exit --pes 1
 # The simulated machine is one process; with one process mpirun changes nothing.
 ends 2 "job: error: --sim pes=2: each process of the job would simulate the whole machine; start .* without mpirun" -n 2 "$job" exit --sim pes=2
 once "would simulate the whole machine"

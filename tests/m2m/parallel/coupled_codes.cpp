@@ -90,7 +90,13 @@ struct Code : Chare<Code<side>>, Piece<Code<side>> {
                                 in.begin() + std::ptrdiff_t((v + 1) * of)};
     this->contribute(JoinValues{}, std::move(all), std::move(target));
   }
+  void start_round(CouplingId id) {
+    this->template m2m_give<Code<1>, &Code<side>::out, &Code<1>::in>(id);
+  }
   void received(CouplingId) { ++n_received; }
+  void count_received(Callback<std::uint64_t> total) {
+    this->contribute(sum, std::exchange(n_received, 0), std::move(total));
+  }
   /// Balances, and goes on when all pieces of this code have come here.
   void balance(Callback<std::uint64_t> when_done) {
     done = std::move(when_done);
@@ -489,6 +495,48 @@ Task retired() {
   co_await end(codes);
 }
 
+/// Pieces start rounds, and most points of the other code are outside: each round reaches the pieces
+/// that the application of the whole reaches, and with the same bits.
+Task rounds() {
+  const std::uint64_t n_targets = 12, n_rounds = 3;
+  TetMesh left_end = left_mesh;
+  for (Point& p : left_end.points) p[0] *= 0.2;
+  for (const TransferKind kind : {TransferKind::linear, TransferKind::conservative}) {
+    Two codes;
+    co_await epoch([&] {
+      codes.left = pieces<Left>(left_end, 5, 0, 1, 1);
+      codes.right = pieces<Right>(right_mesh, static_cast<std::int32_t>(n_targets), 0, 1, 1);
+    });
+    CouplingOptions options;
+    options.kind = kind;
+    options.policy = UseValue{-7e5};
+    Coupling there(codes.left, codes.right, options);
+    for (int k = 1; k <= 2; ++k) {
+      co_await there.search();
+      co_await step(codes, k);
+      co_await there.apply<&Left::out, &Right::in>();
+      ValueOf whole, by_rounds;
+      co_await values_of(codes.right, &whole);
+      co_await epoch([&] {
+        codes.left.broadcast<&Left::hop>(k);
+        codes.right.broadcast<&Right::hop>(k + 1);
+        codes.right.broadcast<&Right::forget>();
+      });
+      co_await epoch([&] {
+        for (std::uint64_t round = 0; round < n_rounds; ++round)
+          codes.left.broadcast<&Left::start_round>(there.id());
+      });
+      co_await values_of(codes.right, &by_rounds);
+      TESS_CHECK(by_rounds == whole, "rounds of pieces give other values in step ", k);
+      Future<std::uint64_t> n_received;
+      codes.right.broadcast<&Right::count_received>(n_received.callback());
+      const std::uint64_t n = co_await n_received;
+      TESS_CHECK(n == (1 + n_rounds) * n_targets, n, " calls of received() in step ", k);
+    }
+    co_await end(codes);
+  }
+}
+
 /// Ten thousand applications: the same bits, and flat memory.
 Task repeats() {
   Two codes;
@@ -526,6 +574,7 @@ const std::vector<std::pair<std::string, Program>> programs{{"components", compo
                                                             {"weights_by_hand", weights_by_hand},
                                                             {"destroyed", destroyed},
                                                             {"retired", retired},
+                                                            {"rounds", rounds},
                                                             {"repeats", repeats}};
 
 Task run_programs(std::vector<std::string> names) {

@@ -6,10 +6,10 @@
 source "$(dirname "$0")/../../support/checks.sh"
 program=$1
 limit=120
-codes=(components migration balancing three_at_once many_fields motion empty_pieces births two_kinds weights_by_hand destroyed retired)
+codes=(components migration balancing three_at_once many_fields motion empty_pieces births two_kinds weights_by_hand destroyed retired rounds)
 # all_hold COMMAND…: every code reports that it holds.
 all_hold() {
-  exits 0 "retired: holds" "$@" "${codes[@]}"
+  exits 0 "rounds: holds" "$@" "${codes[@]}"
   [[ $(grep -c ': holds$' "$scratch/out") -eq ${#codes[@]} ]] && pass || fail "not all hold: $*"
 }
 
