@@ -1,12 +1,14 @@
 #include "apps/checkpoints.hpp"
 
 #include "runtime/core/error.hpp"
+#include "runtime/core/number.hpp"
 #include "runtime/core/text.hpp"
 #include "runtime/runtime.hpp"
 
 #include <algorithm>
-#include <charconv>
+#include <cmath>
 #include <filesystem>
+#include <string_view>
 #include <system_error>
 
 namespace apps {
@@ -44,14 +46,11 @@ void Checkpoints::check_folders() {
 
 void Checkpoints::check_every() {
   const bool by_time = every_.ends_with('s');
-  const char* const end = every_.data() + every_.size() - (by_time ? 1 : 0);
-  double number = 0;
-  const auto [read_to, wrong] = std::from_chars(every_.data(), end, number);
+  const std::string_view text =
+      std::string_view(every_).substr(0, every_.size() - (by_time ? 1 : 0));
+  const double number = tess::parse_number<double>(text).value_or(0);
   constexpr double most = 1e9;
-  const bool whole =
-      number == static_cast<double>(static_cast<std::int64_t>(std::clamp(number, 0.0, most)));
-  if (wrong != std::errc() || read_to != end || !(number > 0) || number > most ||
-      (!by_time && !whole))
+  if (!(number > 0 && number <= most) || (!by_time && number != std::floor(number)))
     tess::fail(tess::ErrorCode::bad_argument, "--checkpoint-every: ", every_,
                " is neither a number of steps, as 20, nor of seconds, as 30s");
   if (by_time) {

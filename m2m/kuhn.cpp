@@ -2,9 +2,10 @@
 
 #include "runtime/core/error.hpp"
 #include "runtime/core/hash.hpp"
+#include "runtime/core/number.hpp"
 
+#include <algorithm>
 #include <array>
-#include <charconv>
 #include <fmt/core.h>
 
 namespace tess::m2m {
@@ -31,18 +32,14 @@ KuhnBox parse_kuhn(std::string_view name) {
          "': expected kuhn:N or kuhn:N@JITTER with N from 1 to ", largest_n,
          " and JITTER from 0 to ", largest_jitter);
   };
-  KuhnBox box;
   if (!name.starts_with("kuhn:")) refuse();
-  const char* const end = name.data() + name.size();
-  auto [next, error] = std::from_chars(name.data() + 5, end, box.n);
-  if (error != std::errc() || box.n < 1 || box.n > largest_n) refuse();
-  if (next != end) {
-    if (*next != '@') refuse();
-    const auto [last, bad] = std::from_chars(next + 1, end, box.jitter);
-    if (bad != std::errc() || last != end || !(box.jitter >= 0 && box.jitter <= largest_jitter))
-      refuse();
-  }
-  return box;
+  const std::string_view size = name.substr(5);
+  const std::size_t at = std::min(size.find('@'), size.size());
+  const auto n = parse_number<decltype(KuhnBox::n)>(size.substr(0, at));
+  const auto jitter = at == size.size() ? 0.0 : parse_number<double>(size.substr(at + 1));
+  if (!n || *n < 1 || *n > largest_n || !jitter || !(*jitter >= 0 && *jitter <= largest_jitter))
+    refuse();
+  return {*n, *jitter};
 }
 
 GlobalId n_points(KuhnBox box) {

@@ -1,9 +1,9 @@
 #include "m2m/policy.hpp"
 
 #include "runtime/core/error.hpp"
+#include "runtime/core/number.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 namespace tess::m2m {
@@ -12,10 +12,8 @@ OutsidePolicy parse_policy(const std::string& text) {
   if (text == "keep") return Keep{};
   if (text == "nearest") return Nearest{};
   if (text.starts_with("value:")) {
-    UseValue policy;
-    const char* const end = text.data() + text.size();
-    const auto [last, error] = std::from_chars(text.data() + 6, end, policy.value);
-    if (error == std::errc() && last == end && std::isfinite(policy.value)) return policy;
+    const auto value = parse_number<double>(std::string_view(text).substr(6));
+    if (value && std::isfinite(*value)) return UseValue{*value};
   }
   fail(ErrorCode::bad_argument, "policy '", text,
        "' is unknown; choose keep, nearest or value:NUMBER");

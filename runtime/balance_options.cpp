@@ -3,6 +3,7 @@
 #include "runtime/balance/prediction.hpp"
 #include "runtime/balance/strategy.hpp"
 #include "runtime/core/error.hpp"
+#include "runtime/core/number.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -20,11 +21,10 @@ double number(std::string_view key, std::string_view value, std::string_view* re
 }
 
 std::uint64_t whole(std::string_view key, std::string_view value) {
-  std::uint64_t result = 0;
-  const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), result);
-  if (error != std::errc() || end != value.data() + value.size())
+  const auto number = parse_number<std::uint64_t>(value);
+  if (!number)
     fail(ErrorCode::bad_argument, "--balance ", key, ": ", value, " is not a whole number");
-  return result;
+  return *number;
 }
 
 std::chrono::nanoseconds time(std::string_view key, std::string_view value) {

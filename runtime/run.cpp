@@ -2,6 +2,7 @@
 
 #include "runtime/collections/elements/element.hpp"
 #include "runtime/core/check.hpp"
+#include "runtime/core/number.hpp"
 #include "runtime/machine/mpi.hpp"
 #include "runtime/machine/simulated.hpp"
 #include "runtime/machine/threads.hpp"
@@ -25,12 +26,11 @@ namespace {
 constexpr std::int32_t most_pes = 4096;
 
 std::int32_t number_of_pes(std::string_view value) {
-  std::int32_t number = 0;
-  const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), number);
-  if (error != std::errc() || end != value.data() + value.size() || number < 1 || number > most_pes)
+  const auto number = parse_number<std::int32_t>(value);
+  if (!number || *number < 1 || *number > most_pes)
     fail(ErrorCode::bad_argument, "--pes: ", value, " is not a whole number from 1 to ", most_pes,
          "; --sim pes=N simulates more");
-  return number;
+  return *number;
 }
 
 /// "64MiB": bytes, KiB, MiB or GiB.
@@ -62,12 +62,11 @@ MonitorOptions monitor_options(std::string_view value, std::string_view token) {
     options.address = address;
     port = value.substr(colon + 1);
   }
-  unsigned number = 0;
-  const auto [end, error] = std::from_chars(port.data(), port.data() + port.size(), number);
-  if (error != std::errc() || end != port.data() + port.size() || number > 65535)
+  const auto number = parse_number<std::uint16_t>(port);
+  if (!number)
     fail(ErrorCode::bad_argument, "--monitor ", value,
          " is not a port of 0 … 65535, or ADDRESS:PORT");
-  options.port = static_cast<std::uint16_t>(number);
+  options.port = *number;
   const bool is_loopback = options.address.starts_with("127.") || options.address == "::1";
   if (!is_loopback && token.empty())
     fail(ErrorCode::bad_argument, "--monitor ", value,
@@ -77,14 +76,12 @@ MonitorOptions monitor_options(std::string_view value, std::string_view token) {
 
 /// "2.5": a time above 0.
 std::chrono::nanoseconds number_of_seconds(std::string_view option, std::string_view value) {
-  double number = 0;
-  const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), number);
+  const auto number = parse_number<double>(value);
   constexpr double least = 1e-6, most = 1e9;
-  if (error != std::errc() || end != value.data() + value.size() ||
-      !(number >= least && number <= most))
+  if (!number || !(*number >= least && *number <= most))
     fail(ErrorCode::bad_argument, option, ": ", value,
          " is not a number of seconds of 0.000001 to 1000000000");
-  return std::chrono::nanoseconds(static_cast<std::int64_t>(number * 1e9));
+  return std::chrono::nanoseconds(static_cast<std::int64_t>(*number * 1e9));
 }
 
 void print_error(const char* program, const Error& error) {

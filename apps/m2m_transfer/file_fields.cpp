@@ -16,6 +16,7 @@
 #include "m2m/write_exodus.hpp"
 #include "m2m/write_vtu.hpp"
 #include "runtime/core/error.hpp"
+#include "runtime/core/number.hpp"
 
 #include <algorithm>
 #include <fmt/core.h>
@@ -109,11 +110,12 @@ class SourceFields {
       for (std::size_t step = 0; step < n; ++step) steps_.push_back(step);
       if (n > 0) return;
     }
-    std::size_t step = n == 0 ? 0 : n - 1;
-    if (!text.empty() && text != "all" && !read_number(text, step))
+    const std::size_t last = n == 0 ? 0 : n - 1;
+    const auto step = text.empty() || text == "all" ? last : parse_number<std::size_t>(text);
+    if (!step)
       fail(ErrorCode::bad_argument, "--step ", text,
            " is no step; give a number from 0 on, or all");
-    steps_ = {step};
+    steps_ = {*step};
   }
 
   const TetMesh& mesh_;

@@ -1,9 +1,9 @@
 #include "apps/overset/body.hpp"
 
 #include "runtime/core/error.hpp"
+#include "runtime/core/number.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -141,10 +141,9 @@ Body parse_body(std::string_view name) {
   const std::size_t colon = std::min(name.find(':'), name.size() - 1);
   for (const auto& [word, shape] : shapes)
     if (name.substr(0, colon) == word) body.shape = shape;
-  const char* const end = name.data() + name.size();
-  const auto [at, error] = std::from_chars(name.data() + colon + 1, end, body.n);
+  body.n = tess::parse_number<decltype(body.n)>(name.substr(colon + 1)).value_or(0);
   if (body.shape == Body::Shape::torus) body.radius = 0.32;
-  if (error != std::errc() || at != end || body.n < 2 || body.n > 200)
+  if (body.n < 2 || body.n > 200)
     tess::fail(tess::ErrorCode::bad_argument, name, ": give a number from 2 to 200, as in ball:12");
   return body;
 }

@@ -1,6 +1,7 @@
 #include "apps/task_bench/settings.hpp"
 
-#include <charconv>
+#include "runtime/core/number.hpp"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <limits>
@@ -57,12 +58,10 @@ Load balancing:
 
 template <class T>
 T number(std::string_view option, std::string_view value, T least, T most) {
-  T result{};
-  const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), result);
-  if (error != std::errc() || end != value.data() + value.size() ||
-      !(result >= least && result <= most))
+  const auto result = tess::parse_number<T>(value);
+  if (!result || !(*result >= least && *result <= most))
     refuse(fmt::format("{} {}: not a number within {} ... {}", option, value, least, most));
-  return result;
+  return *result;
 }
 
 /// A graph as it is given, before defaults that depend on others.

@@ -2,11 +2,11 @@
 
 #include "runtime/core/error.hpp"
 #include "runtime/core/hash.hpp"
+#include "runtime/core/number.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <charconv>
 #include <cstdio>
 #include <cstring>
 #include <fcntl.h>
@@ -237,10 +237,8 @@ std::vector<std::uint64_t> numbers_in(const std::string& folder) {
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
     const std::string name = entry.path().filename().string();
     if (!name.starts_with(prefix)) continue;
-    std::uint64_t number = 0;
-    const char* const end = name.data() + name.size();
-    const auto [read_to, wrong] = std::from_chars(name.data() + prefix.size(), end, number);
-    if (wrong == std::errc() && read_to == end) numbers.push_back(number);
+    const auto number = parse_number<std::uint64_t>(std::string_view(name).substr(prefix.size()));
+    if (number) numbers.push_back(*number);
   }
   std::sort(numbers.rbegin(), numbers.rend());
   return numbers;

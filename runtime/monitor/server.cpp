@@ -1,6 +1,7 @@
 #include "runtime/monitor/server.hpp"
 
 #include "runtime/core/error.hpp"
+#include "runtime/core/number.hpp"
 #include "runtime/monitor/page.hpp"
 
 #include <boost/asio/ip/address.hpp>
@@ -14,7 +15,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <chrono>
 #include <deque>
 #include <map>
@@ -60,9 +60,9 @@ Target target_of(std::string_view given) {
 std::optional<HeatMapId> heat_of(const Target& target) {
   const std::string array = target.value("array"), by = target.value("by");
   HeatMapId id;
-  const char* end = array.data() + array.size();
-  const auto [stop, error] = std::from_chars(array.data(), end, id.array.value, 16);
-  if (error != std::errc() || stop != end || (by != "load" && by != "pe")) return std::nullopt;
+  const auto number = parse_number<decltype(id.array.value)>(array, 16);
+  if (!number || (by != "load" && by != "pe")) return std::nullopt;
+  id.array.value = *number;
   id.by = by == "load" ? HeatBy::load : HeatBy::pe;
   return id;
 }

@@ -1,9 +1,9 @@
 #include "runtime/testing/trial.hpp"
 
 #include "runtime/core/error.hpp"
+#include "runtime/core/number.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cstdlib>
 #include <fmt/core.h>
 
@@ -15,12 +15,11 @@ thread_local Trial* the_trial = nullptr;
 
 template <class Number>
 Number number_of(std::string_view part, std::string_view text, int base) {
-  Number number = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number, base);
-  if (error != std::errc() || end != text.data() + text.size() || text.empty())
+  const auto number = parse_number<Number>(text, base);
+  if (!number)
     fail(ErrorCode::bad_argument, "TESS_TEST_REPEAT: ", part, " ", text,
          " is no number; it is of the form seed=17 or seed=17,keep=2f61b6e8,00a1b2c3");
-  return number;
+  return *number;
 }
 
 }  // namespace

@@ -3,9 +3,9 @@
 #include "apps/collide_scene/input/load.hpp"
 #include "runtime/core/error.hpp"
 #include "runtime/core/hash.hpp"
+#include "runtime/core/number.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <fmt/format.h>
 #include <numbers>
@@ -49,12 +49,9 @@ Motion::Motion(const std::string& text, const Scene& scene) {
   const std::string name = text.substr(0, colon);
   std::optional<double> given;
   if (colon != std::string::npos) {
-    double value = 0;
-    const char *begin = text.data() + colon + 1, *end = text.data() + text.size();
-    const auto [stop, error] = std::from_chars(begin, end, value);
-    if (error != std::errc{} || stop != end || !std::isfinite(value))
+    given = tess::parse_number<double>(std::string_view(text).substr(colon + 1));
+    if (!given || !std::isfinite(*given))
       refuse(fmt::format("'{}' is not a finite number", text.substr(colon + 1)));
-    given = value;
   }
   if (name == "own" && !given) {
     if (!scene.move) refuse("the scene does not move by itself; give drift or turn");

@@ -7,8 +7,7 @@
 #include "apps/collide_scene/scenes/random_boxes.hpp"
 #include "apps/collide_scene/scenes/waves.hpp"
 #include "runtime/core/error.hpp"
-
-#include <charconv>
+#include "runtime/core/number.hpp"
 
 namespace collide_scene {
 namespace {
@@ -80,8 +79,8 @@ Scene make_scene(std::string_view text, std::uint64_t seed) {
   std::uint64_t n = kind->default_n;
   if (const std::size_t colon = text.find(':'); colon != std::string_view::npos) {
     const std::string_view digits = text.substr(colon + 1);
-    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), n);
-    if (error != std::errc{} || end != digits.data() + digits.size() || n < 1 || n > kMost)
+    n = tess::parse_number<std::uint64_t>(digits).value_or(0);
+    if (n < 1 || n > kMost)
       tess::fail(tess::ErrorCode::bad_value, "scene '", text, "': '", digits,
                  "' is no number from 1 to ", kMost);
   }

@@ -1,7 +1,6 @@
 // Lists on the command line.
 #pragma once
 
-#include <charconv>
 #include <string>
 #include <vector>
 
@@ -19,13 +18,6 @@ namespace m2m_transfer {
       parts.back() += c;
   }
   return parts;
-}
-
-/// Reads a whole text as one number. False if it is none.
-template <class T>
-[[nodiscard]] bool read_number(const std::string& text, T& value) {
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc() && end == text.data() + text.size() && !text.empty();
 }
 
 }  // namespace m2m_transfer

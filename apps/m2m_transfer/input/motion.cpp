@@ -3,6 +3,7 @@
 #include "apps/m2m_transfer/input/graph.hpp"
 #include "apps/m2m_transfer/input/lists.hpp"
 #include "runtime/core/error.hpp"
+#include "runtime/core/number.hpp"
 
 #include <cmath>
 #include <numbers>
@@ -33,11 +34,10 @@ StepMotion parse_motion(const std::string& text, const std::vector<std::string>&
   for (std::size_t i = 0; i < words.size(); ++i) {
     const bool is_angle = verb == "rotate" && i == 3;
     if (is_angle && !words[i].ends_with("deg")) refuse(text);
-    double number = 0;
-    if (!read_number(is_angle ? words[i].substr(0, words[i].size() - 3) : words[i], number) ||
-        !std::isfinite(number) || std::abs(number) > 1e100)
-      refuse(text);
-    numbers.push_back(is_angle ? number * std::numbers::pi / 180 : number);
+    const std::size_t unit = is_angle ? 3 : 0;
+    const auto number = parse_number<double>(words[i].substr(0, words[i].size() - unit));
+    if (!number || !(std::abs(*number) <= 1e100)) refuse(text);
+    numbers.push_back(is_angle ? *number * std::numbers::pi / 180 : *number);
   }
   RigidMotion& motion = out.motion;
   if (verb == "translate" && numbers.size() == 3) {

@@ -3,6 +3,7 @@
 #include "apps/m2m_transfer/input/lists.hpp"
 #include "apps/m2m_transfer/run/steps.hpp"
 #include "runtime/core/error.hpp"
+#include "runtime/core/number.hpp"
 
 namespace m2m_transfer {
 namespace {
@@ -64,9 +65,8 @@ Task run_kind(Problem& problem, const std::vector<std::int32_t>& trips, apps::Pr
 std::vector<std::int32_t> parse_trips(const std::string& text) {
   std::vector<std::int32_t> trips;
   for (const std::string& word : split_at_commas(text)) {
-    std::int32_t count = 0;
-    if (!read_number(word, count) || count < 1 || count > 1000000 ||
-        (!trips.empty() && count <= trips.back()))
+    const auto count = parse_number<std::int32_t>(word).value_or(0);
+    if (count < 1 || count > 1000000 || (!trips.empty() && count <= trips.back()))
       fail(ErrorCode::bad_argument, "--round-trips: '", text,
            "' is no list of ascending numbers from 1; give for example 1,2,5,10");
     trips.push_back(count);

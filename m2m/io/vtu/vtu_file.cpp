@@ -3,10 +3,10 @@
 #include "m2m/io/field_reader.hpp"
 #include "m2m/io/text_number.hpp"
 #include "m2m/io/vtu/xml_scanner.hpp"
+#include "runtime/core/number.hpp"
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cstring>
 #include <optional>
 #include <type_traits>
@@ -103,12 +103,9 @@ std::size_t VtuFile::size_of(const XmlTag& tag, std::string_view name,
                              std::optional<std::size_t> otherwise) const {
   const auto text = tag.attribute(name);
   if (!text && otherwise) return *otherwise;
-  std::size_t value = 0;
-  if (!text) damaged(tag.name, " has no number ", name);
-  const char* const end = text->data() + text->size();
-  const auto [stop, error] = std::from_chars(text->data(), end, value);
-  if (error != std::errc{} || stop != end) damaged(tag.name, " has no number ", name);
-  return value;
+  const auto value = text ? parse_number<std::size_t>(*text) : std::nullopt;
+  if (!value) damaged(tag.name, " has no number ", name);
+  return *value;
 }
 
 void VtuFile::read_root(const XmlTag& tag) {

@@ -186,6 +186,18 @@ TEST_CASE("steps that are taken back lead to the start", "[leanmd]") {
   }
 }
 
+TEST_CASE("the forces of the start give no kick, and those of a step one", "[leanmd]") {
+  const std::vector<Vector> force{{300, -2000, 10000}};
+  for (const std::int32_t step : {0, 1}) {
+    std::vector<Atom> one{Atom{7, {}, {5, 6, 7}}};
+    Atoms atoms(Problem{.box = {edge, {4, 4, 4}}});
+    atoms.add(one);
+    (void)atoms.finish(Forces{.step = step, .on = force});
+    if (step == 1) Motion::kick(one, force);
+    CHECK(atoms.with_forces().front().first.velocity == one.front().velocity);
+  }
+}
+
 TEST_CASE("the atoms of the start are at rest together, and denser where the gradient says",
           "[leanmd]") {
   const Motion motion(edge, 0.004);
