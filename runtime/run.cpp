@@ -108,8 +108,8 @@ bool is_in_job() {
   return under_mpirun() || program_owns_mpi();
 }
 
-/// The number that a process that refuses its input passes to Machine::agree(); others pass the
-/// fingerprint of the program.
+/// The number that a process that refuses its input passes to Machine::agree(); others pass one
+/// that the fingerprint of the program gives.
 constexpr std::uint64_t refused = 0x7265667573656421U;
 
 /// Handles an Error before the run. If all processes have one, process 0 prints it. Otherwise the

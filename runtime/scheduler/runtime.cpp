@@ -111,12 +111,14 @@ int Runtime::refuse_job(std::string_view why) {
 
 int Runtime::run() {
   Registry::seal();
-  if (!machine_.agree(Registry::fingerprint()))
-    return refuse_job(
-        "the processes of this job run different programs: start the same build "
-        "everywhere");
-  if (!machine_.agree(options_.audit ? 1 : 0))
-    return refuse_job("only some processes of this job were given --audit: give it to all");
+  // Which of them differs is asked only then. It also holds the others until a process that was
+  // refused (run.cpp) ends the job with its own error.
+  const std::uint64_t program = Registry::fingerprint();
+  if (!machine_.agree(program + (options_.audit ? 1 : 0)))
+    return refuse_job(machine_.agree(program)
+                          ? "only some processes of this job were given --audit: give it to all"
+                          : "the processes of this job run different programs: start the same "
+                            "build everywhere");
   if (!options_.trace.empty()) require_writable_trace(trace_path());
   machine_.run(*this);
   write_traces();

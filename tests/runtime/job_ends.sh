@@ -63,6 +63,9 @@ ends 2 "different programs" -n 1 "$job" exit --pes 1 : -n 1 "$other" exit --pes 
 once "different programs"
 ends 2 "different numbers of PEs" -n 1 "$job" exit --pes 1 : -n 1 "$job" exit --pes 2
 ends 2 "only some processes of this job were given --audit" -n 1 "$job" exit --pes 1 --audit : -n 1 "$job" exit --pes 1
+once "error: "
+ends 2 "--hang-report: x is not a number" -n 1 "$job" exit --pes 1 : -n 1 "$job" exit --pes 1 --hang-report x
+once "error: "
 # The simulated machine is one process; with one process mpirun changes nothing.
 ends 2 "job: error: --sim pes=2: each process of the job would simulate the whole machine; start .* without mpirun" -n 2 "$job" exit --sim pes=2
 once "would simulate the whole machine"
