@@ -1,6 +1,7 @@
 #include "runtime/balance/rounds/exchange.hpp"
 
 #include "runtime/balance/strategies/diffusion.hpp"
+#include "runtime/balance/strategy.hpp"
 #include "runtime/future.hpp"
 
 #include <bit>
