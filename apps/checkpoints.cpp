@@ -27,6 +27,10 @@ void Checkpoints::add_options(CommandLine& line) {
 void Checkpoints::check(const CommandLine& line, const std::vector<std::string>& of_problem) {
   check_every();
   check_folders();
+  for (const char* option : {"--checkpoint-every", "--checkpoint-buddy"})
+    if (folder_.empty() && line.is_given(option))
+      tess::fail(tess::ErrorCode::bad_argument, option,
+                 ": is an option of --checkpoint; give a folder, or leave it out");
   gives_steps_ = line.is_given("--steps");
   for (const std::string& name : of_problem) {
     problem_[name] = line.value(name);

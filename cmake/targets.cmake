@@ -84,8 +84,11 @@ function(tess_library name)
   if(TESS_COMPONENT)
     install(TARGETS ${name} EXPORT Tessera_${TESS_COMPONENT} FILE_SET HEADERS DESTINATION include/tessera)
   endif()
+  list(FILTER ARG_SOURCES EXCLUDE REGEX "^/")  # generated
+  list(TRANSFORM ARG_SOURCES PREPEND "${CMAKE_CURRENT_SOURCE_DIR}/")
   set_property(GLOBAL APPEND PROPERTY TESS_HEADERS ${ARG_HEADERS})
-  set_property(GLOBAL APPEND PROPERTY TESS_LIBRARIES ${name})
+  set_property(GLOBAL APPEND PROPERTY TESS_SOURCES ${ARG_SOURCES})
+  set_property(GLOBAL APPEND PROPERTY TESS_LIBRARIES ${name} ${ARG_USES} ${ARG_USES_TO_BUILD})
 endfunction()
 
 # tess_component(LIBRARY): Tessera::<component> is this library and all that it stands on.

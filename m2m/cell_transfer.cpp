@@ -80,6 +80,11 @@ Task transfer_cells(const TetMesh& source, const std::vector<Field>& fields, con
     fail(ErrorCode::bad_argument, "kind ", name_of(options.kind),
          " has no nearest cell for what lies outside: choose policy keep or value for fields in "
          "elements, or kind nearest");
+  if (std::holds_alternative<UseValue>(options.policy) && options.kind == TransferKind::nearest)
+    fail(
+        ErrorCode::bad_argument,
+        "kind nearest compares only centroids of elements, and so does not know which lie outside: "
+        "choose policy keep or nearest for fields in elements");
   if (options.clamp && options.kind == TransferKind::second_order)
     options.kind = TransferKind::limited;
   const CellForm form = form_of(options.kind);

@@ -36,7 +36,7 @@ struct CellOutcome {
 /// `fields`: n_tets rows of the source each; the tetrahedra of an element have the same value. Cuts
 /// each mesh into `n_parts`. Target cells that the policy keeps have the value 0. Throws Error
 /// (bad_argument) for a kind and a policy that do not go together: only kind nearest has a nearest
-/// cell. `source`, `fields` and `target` outlive the task.
+/// cell, and none that is outside. `source`, `fields` and `target` outlive the task.
 Task transfer_cells(const TetMesh& source, const std::vector<Field>& fields, const TetMesh& target,
                     std::int32_t n_parts, PartitionMethod method, TransferOptions options,
                     CellOutcome* outcome);

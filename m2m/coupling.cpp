@@ -149,7 +149,8 @@ AnyCoupling::~AnyCoupling() = default;
 AnyCoupling::AnyCoupling(PieceArray source, PieceArray target, CouplingOptions options)
     : state_(std::make_unique<State>(State{source, target, std::move(options)})) {
   CouplingOptions& given = state_->options;
-  if (given.kind == TransferKind::nearest) given.policy = Nearest{};
+  if (given.kind == TransferKind::nearest && std::holds_alternative<Keep>(given.policy))
+    given.policy = Nearest{};
   if (given.kind == TransferKind::second_order && given.clamp) given.kind = TransferKind::limited;
 }
 

@@ -63,8 +63,9 @@ namespace tess::m2m {
 
 struct CouplingOptions {
   Point voxel_origin{0, 0, 0};
-  Point voxel_size{0, 0, 0};      ///< zero: chosen
-  OutsidePolicy policy = Keep{};  ///< for target points outside the source; Nearest if `kind` is
+  Point voxel_size{0, 0, 0};  ///< zero: chosen
+  /// For target points outside the source. With kind nearest, Keep is Nearest.
+  OutsidePolicy policy = Keep{};
   TransferKind kind = TransferKind::linear;
   /// A point outside that is at most so far from a tetrahedron, in units of the mesh, snaps to the
   /// nearest one. Its value is that of the nearest point there. Kinds that are not conservative.

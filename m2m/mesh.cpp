@@ -40,6 +40,9 @@ std::string split_text(const TetMesh& mesh) {
     if (!out.empty()) out += ", ";
     out += std::to_string(split.n_elements) + " " + split.type + " into " +
            std::to_string(split.n_tets) + " tetrahedra";
+    if (split.n_folded > 0)
+      out += " (" + std::to_string(split.n_folded) +
+             " folded, so that their tetrahedra overlap: check the order of their vertices)";
   }
   return out;
 }

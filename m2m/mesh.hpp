@@ -62,6 +62,9 @@ struct SplitElements {
   std::string type{};
   std::uint64_t n_elements = 0;
   std::uint64_t n_tets = 0;
+  /// Elements with tetrahedra of both orientations, which overlap: their vertices stand in another
+  /// order than that of the format, or they are too distorted.
+  std::uint64_t n_folded = 0;
   friend bool operator==(const SplitElements&, const SplitElements&) = default;
 };
 
@@ -104,7 +107,7 @@ MeshCensus validate(const TetMesh& mesh);
 /// "120 TRI3, 8 BAR2"; empty if the reader skipped nothing.
 [[nodiscard]] std::string skipped_text(const TetMesh& mesh);
 
-/// "27 HEX8 into 162 tetrahedra"; empty if the reader split nothing.
+/// "27 HEX8 into 162 tetrahedra", and how many are folded; empty if the reader split nothing.
 [[nodiscard]] std::string split_text(const TetMesh& mesh);
 
 /// The box around all points.

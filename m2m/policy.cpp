@@ -13,7 +13,7 @@ OutsidePolicy parse_policy(const std::string& text) {
   if (text == "nearest") return Nearest{};
   if (text.starts_with("value:")) {
     const auto value = parse_number<double>(std::string_view(text).substr(6));
-    if (value && std::isfinite(*value)) return UseValue{*value};
+    if (value && !std::isinf(*value)) return UseValue{*value};
   }
   fail(ErrorCode::bad_argument, "policy '", text,
        "' is unknown; choose keep, nearest or value:NUMBER");

@@ -21,7 +21,7 @@ struct Nearest {};
 
 using OutsidePolicy = std::variant<Keep, UseValue, Nearest>;
 
-/// "keep", "value:0.5" or "nearest". Throws Error (bad_argument) for any other text.
+/// "keep", "value:0.5", "value:nan" or "nearest". Throws Error (bad_argument) for any other text.
 [[nodiscard]] OutsidePolicy parse_policy(const std::string& text);
 
 /// Writes the value of a UseValue to what is outside; other policies change nothing. `values`: a

@@ -3,17 +3,21 @@
 
 #include "m2m/status.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 
 namespace tess::m2m {
 
-/// The number of target points per Status, of pairs (tetrahedron, point in its box) tested, and of
-/// source pieces that had not moved since the last search and kept what it had made of them.
 struct Tally {
-  std::array<std::uint64_t, 4> counts{};
-  std::uint64_t n_candidates = 0;
+  std::array<std::uint64_t, 4> counts{};  ///< target points per Status
+  std::uint64_t n_candidates = 0;         ///< pairs (tetrahedron, point in its box) tested
+  /// Source pieces that had not moved since the last search and kept what it had made of them.
   std::uint64_t n_kept_sources = 0;
+  /// Of conservative kinds: target points or cells that the source covers more than once, since its
+  /// tetrahedra overlap there. Their values are not the projection of one field.
+  std::uint64_t n_overcovered = 0;
+  double most_covered = 0;  ///< the greatest coverage among these, such as 1.25 times
 
   [[nodiscard]] std::uint64_t count(Status status) const {
     return counts[static_cast<std::size_t>(status)];
@@ -22,6 +26,8 @@ struct Tally {
     for (std::size_t s = 0; s < counts.size(); ++s) counts[s] += other.counts[s];
     n_candidates += other.n_candidates;
     n_kept_sources += other.n_kept_sources;
+    n_overcovered += other.n_overcovered;
+    most_covered = std::max(most_covered, other.most_covered);
     return *this;
   }
 };

@@ -181,13 +181,15 @@ void apply(const WeightMatrix& matrix, std::span<const double> values, std::size
       const auto value = [&](std::size_t k) {
         return values[static_cast<std::size_t>(columns[k]) * n_components + c];
       };
+      const auto part = [&](std::size_t k) {
+        return weights[k] == 0 ? 0.0 : weights[k] * value(k);
+      };
       if (columns.size() == 4) {  // as interpolated() in interpolate/locate.hpp
-        to[c] = (weights[0] * value(0) + weights[1] * value(1)) +
-                (weights[2] * value(2) + weights[3] * value(3));
+        to[c] = (part(0) + part(1)) + (part(2) + part(3));
         continue;
       }
-      double sum = weights[0] == 1 ? value(0) : weights[0] * value(0);
-      for (std::size_t k = 1; k < columns.size(); ++k) sum += weights[k] * value(k);
+      double sum = weights[0] == 1 ? value(0) : part(0);
+      for (std::size_t k = 1; k < columns.size(); ++k) sum += part(k);
       to[c] = sum;
     }
   }

@@ -15,16 +15,18 @@
 // later elements from their first at_sync() on. It does not wait for destroyed elements. The
 // balancer ends with its array.
 //
-// A load is known once a whole phase of the element has been measured. For arrays that are created,
-// balanced and only then called this holds from the first round on. An element that ran before it
-// was measured has an unknown load until the next phase: it counts as the mean of the others and is
-// not moved. A round without known loads moves nothing. A program that starts balancing later
-// awaits balancer.begin_phase() before it continues.
+// A load is known once a whole phase of the element has been measured. This holds from the first
+// round on for an array that is called after an awaited epoch in which it was created and balancing
+// started, or after an awaited balancer.begin_phase(). An element that ran before it was measured
+// (a call may overtake the start of balancing on its way to another PE) has an unknown load until
+// the next phase: it counts as the mean of the others and is not moved. A round without known loads
+// moves nothing.
 //
 // A program whose phases are epochs has a barrier already: between two of them it awaits
 // balancer.round(), and no element calls at_sync(). This is the right way for arrays whose elements
-// come and go: at a barrier an element may be too new for the phase that ends, and would wait for
-// the next one.
+// come and go: at a barrier an element may be too new for the phase that ends, also if it was
+// inserted in an awaited epoch. It then waits for the next round, and in the end for one that does
+// not come: a deadlock, on some schedules only.
 #pragma once
 
 #include "runtime/array.hpp"

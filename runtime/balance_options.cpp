@@ -6,18 +6,18 @@
 #include "runtime/core/number.hpp"
 
 #include <algorithm>
-#include <charconv>
+#include <set>
+#include <string_view>
 
 namespace tess {
 namespace {
 
 double number(std::string_view key, std::string_view value, std::string_view* rest) {
-  double result = 0;
-  const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), result);
-  if (error != std::errc() || !(result >= 0))
+  *rest = value;
+  const auto number = take_number<double>(*rest);
+  if (!number || !(*number >= 0))
     fail(ErrorCode::bad_argument, "--balance ", key, ": ", value, " is not a number of at least 0");
-  *rest = std::string_view(end, static_cast<std::size_t>(value.data() + value.size() - end));
-  return result;
+  return *number;
 }
 
 std::uint64_t whole(std::string_view key, std::string_view value) {
@@ -49,7 +49,10 @@ BalanceWhen parse_when(std::string_view value) {
 }  // namespace
 
 BalanceOptions parse_balance(std::string_view given) {
+  if (given.empty())
+    fail(ErrorCode::bad_argument, "--balance: is empty; give a strategy, or leave it out");
   BalanceOptions options;
+  std::set<std::string_view> keys;
   for (bool first = true; !given.empty(); first = false) {
     const std::size_t comma = std::min(given.find(','), given.size());
     const std::string_view part = given.substr(0, comma);
@@ -58,6 +61,8 @@ BalanceOptions parse_balance(std::string_view given) {
     const std::string_view key = part.substr(0, equals);
     const std::string_view value =
         equals == std::string_view::npos ? std::string_view() : part.substr(equals + 1);
+    if (!keys.insert(first && equals == std::string_view::npos ? "strategy" : key).second)
+      fail(ErrorCode::bad_argument, "--balance: ", key, " is given twice; give it once");
     if (key == "strategy") {
       options.strategy = value;
     } else if (key == "when") {
@@ -79,6 +84,9 @@ BalanceOptions parse_balance(std::string_view given) {
            " (strategy, when, period, prediction, window, seed, report)");
     }
   }
+  if (keys.contains("period") && options.when != BalanceWhen::periodic)
+    fail(ErrorCode::bad_argument,
+         "--balance period: is for when=periodic; add that, or leave the period out");
   balance::validate(options, 0);
   return options;
 }

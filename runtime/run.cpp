@@ -11,7 +11,6 @@
 #include "runtime/scheduler/runtime.hpp"
 #include "runtime/service/service.hpp"
 
-#include <charconv>
 #include <cstdio>
 #include <cstring>
 #include <new>
@@ -35,16 +34,15 @@ std::int32_t number_of_pes(std::string_view value) {
 
 /// "64MiB": bytes, KiB, MiB or GiB.
 std::size_t memory_size(std::string_view option, std::string_view value) {
-  std::size_t number = 0;
-  const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), number);
-  const std::string_view unit(end, static_cast<std::size_t>(value.data() + value.size() - end));
+  std::string_view unit = value;
+  const std::size_t number = take_number<std::size_t>(unit).value_or(0);
   const int shift = unit.empty()    ? 0
                     : unit == "KiB" ? 10
                     : unit == "MiB" ? 20
                     : unit == "GiB" ? 30
                                     : -1;
   constexpr std::size_t most = std::size_t{1} << 40U;
-  if (error != std::errc() || shift < 0 || number == 0 || number > most >> shift)
+  if (shift < 0 || number == 0 || number > most >> shift)
     fail(ErrorCode::bad_argument, option, ": ", value,
          " is not a size of 1 byte to 1024 GiB: write it as 64MiB (KiB, MiB, GiB, or bytes)");
   return number << shift;
@@ -89,6 +87,15 @@ void print_error(const char* program, const Error& error) {
   std::fprintf(stderr, "%s: error: %s\n", slash != nullptr ? slash + 1 : program,
                one_line(error.what()).c_str());
   std::fflush(stderr);
+}
+
+/// The exit code of a program, unless what it printed is lost, on a full disk for instance.
+int printed(const char* program, int code) {
+  if (code != 0 || (std::fflush(stdout) == 0 && std::ferror(stdout) == 0)) return code;
+  print_error(program, Error(ErrorCode::environment,
+                             "standard output: a part of it could not be written; check that its "
+                             "disk has room"));
+  return 2;
 }
 
 /// Memory was exhausted outside of any message: while input was read or results were written.
@@ -257,7 +264,7 @@ int run_on(Setup& setup, std::function<void()> main) {
 
 int guarded(const char* program, const std::function<int()>& body) {
   try {
-    return body();
+    return printed(program, body());
   } catch (const Error& error) {
     print_error(program, error);
     return 2;
@@ -271,7 +278,7 @@ int guarded(int& argc, char** argv, const std::function<int(Setup&)>& body) {
   Setup setup;
   try {
     setup = take_options(argc, argv);
-    return body(setup);
+    return printed(argv[0], body(setup));
   } catch (const Error& error) {
     refuse(setup, argc, argv, error);
     return 2;

@@ -24,7 +24,7 @@ for preset in "${presets[@]}"; do
   targets=(all)
   tests=()
   if [[ $preset == release ]]; then
-    targets+=(headers_alone)
+    targets+=(files_alone)
   elif $sanitized; then
     targets=(sanitized_tests)
     tests=(-L sanitized)

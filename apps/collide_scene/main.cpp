@@ -4,6 +4,7 @@
 #include "apps/collide_scene/input/load.hpp"
 #include "apps/collide_scene/stability/report.hpp"
 #include "apps/command_line.hpp"
+#include "apps/plot/file_names.hpp"
 #include "runtime/runtime.hpp"
 
 #include <string_view>
@@ -69,6 +70,10 @@ int run(tess::Setup& setup, int argc, char** argv, bool asked_for_pes) {
   if (options.rules.slack > 0 && options.repeat > 1)
     tess::fail(tess::ErrorCode::bad_argument,
                "--repeat: with --slack only the first of equal collisions searches; leave one out");
+  plot::FileNames names;
+  for (const std::string& input : options.inputs) names.reads("INPUT", input);
+  names.writes("--json " + options.json, options.json);
+  names.writes("--trace " + setup.options.trace, setup.options.trace);
   const bool speaks = setup.machine->process().value == 0;
   if (stability && speaks && !collide_scene::print_stability()) return 1;
   if (options.inputs.empty()) {

@@ -84,7 +84,8 @@ int study(int argc, char** argv) {
   }
   if (!out.empty()) draw(out, rows);
   for (const TransferReport& row : rows)
-    if (row.result_hash != rows.front().result_hash || row.counts != rows.front().counts) {
+    if (row.result_hash != rows.front().result_hash ||
+        row.tally.counts != rows.front().tally.counts) {
       fmt::print(stderr, "m2m_scaling: {} PEs give other values than {}\n", row.pes,
                  rows.front().pes);
       return 1;

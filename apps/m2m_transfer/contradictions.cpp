@@ -1,7 +1,6 @@
 #include "apps/m2m_transfer/contradictions.hpp"
 
 #include "apps/command_line.hpp"
-#include "apps/plot/write_file.hpp"
 #include "runtime/core/check.hpp"
 #include "runtime/core/error.hpp"
 
@@ -104,23 +103,19 @@ void refuse_contradictions(const DriverOptions& o, Mode mode) {
   }
 }
 
-void refuse_equal_paths(const DriverOptions& o) {
-  std::vector<std::pair<std::string, std::string>> taken;  // option or side, path
-  for (const std::string& mesh : o.request.more) taken.emplace_back("a mesh", mesh);
-  taken.emplace_back("SOURCE", o.request.source);
-  taken.emplace_back("TARGET", o.request.target);
-  taken.emplace_back("--from-weights", o.from_weights);
-  for (const auto& [option, path] : {std::pair<std::string, std::string>{"--out", o.out},
+plot::FileNames file_names(const DriverOptions& o, const std::string& trace) {
+  plot::FileNames names;
+  for (const std::string& mesh : o.request.more) names.reads("a mesh", mesh);
+  names.reads("SOURCE", o.request.source);
+  names.reads("TARGET", o.request.target);
+  names.reads("--from-weights", o.from_weights);
+  for (const auto& [option, path] : {std::pair<const char*, std::string>{"--out", o.out},
                                      {"--picture", o.picture},
                                      {"--json", o.json},
-                                     {"--weights", o.weights}}) {
-    if (path.empty()) continue;
-    for (const auto& [other, other_path] : taken)
-      if (plot::is_same_file(path, other_path))
-        fail(ErrorCode::bad_argument, option, " ", path, " would overwrite ", other, " ",
-             other_path, "; give another file");
-    taken.emplace_back(option, path);
-  }
+                                     {"--weights", o.weights},
+                                     {"--trace", trace}})
+    names.writes(text(option, " ", path), path);
+  return names;
 }
 
 }  // namespace m2m_transfer

@@ -2,6 +2,9 @@
 #pragma once
 
 #include "apps/m2m_transfer/driver.hpp"
+#include "apps/plot/file_names.hpp"
+
+#include <string>
 
 namespace m2m_transfer {
 
@@ -12,8 +15,8 @@ enum class Mode : std::uint8_t { transfer, files, study, round_trips, stability 
 /// given.
 void refuse_contradictions(const DriverOptions& options, Mode mode);
 
-/// Throws Error (bad_argument) with the first output whose path is that of an input or of another
-/// output.
-void refuse_equal_paths(const DriverOptions& options);
+/// The files that the options name; `trace` is that of the runtime's option. Throws Error
+/// (bad_argument) with the first output whose path is that of an input or of another output.
+[[nodiscard]] plot::FileNames file_names(const DriverOptions& options, const std::string& trace);
 
 }  // namespace m2m_transfer

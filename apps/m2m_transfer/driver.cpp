@@ -20,6 +20,8 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
+#include <fmt/format.h>
 
 namespace m2m_transfer {
 namespace {
@@ -83,7 +85,21 @@ Task drift_table(const DriverOptions& options, apps::Progress& progress) {
   if (!options.json.empty()) plot::write_file(options.json, json(drift));
 }
 
-Task transfer_once(const DriverOptions& options, apps::Progress& progress) {
+/// Throws Error (bad_argument) if a mesh of the result, or a part of one, would replace a file of
+/// the run. Their names are known when the meshes are.
+void refuse_to_overwrite(plot::FileNames names, const std::string& out, const Problem& problem) {
+  for (std::size_t m = 0; m < problem.meshes.size() && !out.empty(); ++m) {
+    if (!is_written(m, problem.pairs)) continue;
+    const std::string path = path_of_result(out, m, problem.meshes.size(), problem.pairs);
+    if (path != out) names.writes("--out " + out, path);
+    for (std::int32_t k = 0; k < problem.chares() && is_pvtu(out); ++k)
+      names.writes("--out " + out,
+                   std::filesystem::path(path).replace_extension(fmt::format("{}.vtu", k)));
+  }
+}
+
+Task transfer_once(const DriverOptions& options, const plot::FileNames& names,
+                   apps::Progress& progress) {
   const Request request = single_request(options);
   plot::require_writable("--json", options.json);
   plot::require_writable("--out", options.out);
@@ -91,6 +107,7 @@ Task transfer_once(const DriverOptions& options, apps::Progress& progress) {
   plot::require_picture("--picture", options.picture);
   Problem problem;
   co_await read(request, progress, problem);
+  refuse_to_overwrite(names, options.out, problem);
   const bool in_parts = is_pvtu(options.out);
   if (in_parts) problem.parts_path = options.out;
   const bool writes_whole = !options.out.empty() && !in_parts;
@@ -233,16 +250,15 @@ Mode mode_of(const DriverOptions& options) {
 
 int drive(Setup& setup, const DriverOptions& options) {
   apps::Progress progress(setup.machine->process().value == 0 ? stderr : nullptr);
+  const plot::FileNames names = file_names(options, setup.options.trace);
   if (options.stability) {
     refuse_contradictions(options, Mode::stability);
-    refuse_equal_paths(options);
     return run_stability(setup, options, progress);
   }
   bool failed = false;
   const int code = tess::run(setup, [&]() -> Task {
     const Mode mode = mode_of(options);
     refuse_contradictions(options, mode);
-    refuse_equal_paths(options);
     switch (mode) {
       case Mode::round_trips:
         return drift_table(options, progress);
@@ -253,7 +269,7 @@ int drive(Setup& setup, const DriverOptions& options) {
                                         : run_study(options, progress, failed);
       default:
         return wants_all_kinds(options) ? transfer_all_kinds(options, progress)
-                                        : transfer_once(options, progress);
+                                        : transfer_once(options, names, progress);
     }
   });
   return code == 0 && failed ? 1 : code;

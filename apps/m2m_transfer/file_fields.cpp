@@ -3,6 +3,7 @@
 #include "apps/m2m_transfer/input/lists.hpp"
 #include "apps/m2m_transfer/input/status_field.hpp"
 #include "apps/m2m_transfer/output/farthest.hpp"
+#include "apps/m2m_transfer/output/found.hpp"
 #include "apps/m2m_transfer/result_format.hpp"
 #include "apps/plot/json_text.hpp"
 #include "apps/plot/write_file.hpp"
@@ -205,7 +206,7 @@ Task transfer_batch(Run& run, const Batch& batch, std::vector<Field>& values,
   SearchSummary found;
   co_await transfer.search(&found);
   if (!report.searched) {
-    report.counts = found.tally.counts;
+    report.tally = found.tally;
     report.worst = found.worst;
     if (!run.request.weights.empty())
       co_await collect_weights(transfer, static_cast<std::int64_t>(run.source.n_points()),
@@ -247,7 +248,7 @@ Task transfer_cell_batch(const Run& run, const Batch& batch, CellOutcome& cells,
                          FileFieldsReport& report) {
   co_await transfer_cells(run.source, batch.cells.fields, run.target, run.request.n_chares,
                           parse_partition_method(run.request.partition), run.options, &cells);
-  report.cell_counts = cells.search.tally.counts;
+  report.cell_tally = cells.search.tally;
   report.has_cells = true;
 }
 
@@ -346,6 +347,8 @@ Task move_file_fields(const FileFieldsRequest& request, apps::Progress& progress
   run.options.on_phase = [&progress](const char* name) { progress.phase(name); };
   report->source = request.source;
   report->target = request.target;
+  report->source_elements = {skipped_text(run.source), split_text(run.source)};
+  report->target_elements = {skipped_text(run.target), split_text(run.target)};
   const SourceFields fields(request, run.source);
   if (is_vtu(request.out) && fields.steps().size() > 1)
     fail(ErrorCode::bad_argument, "--out ", request.out, ": VTU holds one step, and there are ",
@@ -392,19 +395,23 @@ Task move_file_fields(const FileFieldsRequest& request, apps::Progress& progress
 std::string table(const FileFieldsReport& r) {
   std::string names;
   for (const std::string& name : r.fields) names += (names.empty() ? "" : ", ") + name;
-  std::string out = fmt::format("{} -> {}\n  {:<12} {}\n", r.source, r.target, "fields", names);
-  if (r.searched)
-    out += fmt::format("  {:<12} {} inside, {} boundary, {} snapped, {} outside\n", "found",
-                       r.counts[0], r.counts[1], r.counts[2], r.counts[3]);
-  if (r.has_cells)
-    out += fmt::format("  {:<12} {} inside, {} boundary, {} snapped, {} outside\n", "cells found",
-                       r.cell_counts[0], r.cell_counts[1], r.cell_counts[2], r.cell_counts[3]);
-  for (const std::string& place : texts_of(r.worst))
-    out += fmt::format("  {:<12} {}\n", "farthest", place);
+  std::string out = fmt::format("{} -> {}\n", r.source, r.target);
+  const auto line = [&out](const char* title, const std::string& what) {
+    if (!what.empty()) out += fmt::format("  {:<12} {}\n", title, what);
+  };
+  line("fields", names);
+  for (const auto& [title, elements] : lines_of(r.source_elements, r.target_elements))
+    line(title, elements);
+  if (r.searched) line("found", found_text(r.tally.counts));
+  line("overlaps", overcovered_text(r.tally));
+  if (r.has_cells) line("cells found", found_text(r.cell_tally.counts));
+  line("overlaps", overcovered_text(r.cell_tally));
+  for (const std::string& place : texts_of(r.worst)) line("farthest", place);
   if (r.n_weights > 0)
-    out +=
-        fmt::format("  {:<12} {} {}\n", "weights", r.n_weights,
-                    r.searched ? "written" : fmt::format("read, {} vertices without", r.n_without));
+    line("weights",
+         fmt::format(
+             "{} {}", r.n_weights,
+             r.searched ? "written" : fmt::format("read, {} vertices without", r.n_without)));
   for (const MovedStep& step : r.steps)
     out += fmt::format(
         "  {:<12} {:016x}{}{}\n", fmt::format("step {} at {:.6g}", step.step, step.time),
@@ -415,19 +422,22 @@ std::string table(const FileFieldsReport& r) {
 
 std::string json(const FileFieldsReport& r) {
   nlohmann::ordered_json whole{{"source", r.source}, {"target", r.target}, {"fields", r.fields}};
+  whole.update(json_of(r.source_elements, r.target_elements));
   if (r.searched)
-    whole.update({{"inside", r.counts[0]},
-                  {"boundary", r.counts[1]},
-                  {"snapped", r.counts[2]},
-                  {"outside", r.counts[3]},
+    whole.update({{"inside", r.tally.counts[0]},
+                  {"boundary", r.tally.counts[1]},
+                  {"snapped", r.tally.counts[2]},
+                  {"outside", r.tally.counts[3]},
                   {"farthest", json_of(r.worst)}});
   else if (!r.has_cells)
     whole["without_weights"] = r.n_without;
   if (r.has_cells)
-    whole.update({{"cells_inside", r.cell_counts[0]},
-                  {"cells_boundary", r.cell_counts[1]},
-                  {"cells_snapped", r.cell_counts[2]},
-                  {"cells_outside", r.cell_counts[3]}});
+    whole.update({{"cells_inside", r.cell_tally.counts[0]},
+                  {"cells_boundary", r.cell_tally.counts[1]},
+                  {"cells_snapped", r.cell_tally.counts[2]},
+                  {"cells_outside", r.cell_tally.counts[3]}});
+  if (const Tally& tally = r.searched ? r.tally : r.cell_tally; tally.n_overcovered > 0)
+    whole.update({{"overcovered", tally.n_overcovered}, {"most_covered", tally.most_covered}});
   if (r.n_weights > 0) whole["weights"] = r.n_weights;
   whole["steps"] = nlohmann::ordered_json::array();
   for (const MovedStep& step : r.steps)

@@ -5,12 +5,13 @@
 #pragma once
 
 #include "apps/m2m_transfer/names.hpp"
+#include "apps/m2m_transfer/report.hpp"
 #include "apps/progress.hpp"
 #include "m2m/field.hpp"
+#include "m2m/tally.hpp"
 #include "m2m/worst_places.hpp"
 #include "runtime/runtime.hpp"
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -43,12 +44,13 @@ struct MovedStep {
 };
 struct FileFieldsReport {
   std::string source, target;
-  std::vector<std::string> fields;             ///< with their components
-  bool searched = false;                       ///< otherwise the weights were read
-  std::array<std::uint64_t, 4> counts{};       ///< per Status, after a search
-  WorstPlaces worst;                           ///< the same
-  bool has_cells = false;                      ///< fields in elements were moved
-  std::array<std::uint64_t, 4> cell_counts{};  ///< per Status of target cells, then
+  std::vector<std::string> fields;  ///< with their components
+  bool searched = false;            ///< otherwise the weights were read
+  OtherElements source_elements, target_elements;
+  Tally tally;                  ///< after a search
+  WorstPlaces worst;            ///< the same
+  bool has_cells = false;       ///< fields in elements were moved
+  Tally cell_tally;             ///< of target cells, then
   std::uint64_t n_without = 0;  ///< target vertices without weights, if they were read
   std::uint64_t n_weights = 0;  ///< read or written
   std::vector<MovedStep> steps;

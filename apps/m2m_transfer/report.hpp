@@ -4,6 +4,7 @@
 #include "apps/m2m_transfer/names.hpp"
 #include "m2m/field.hpp"
 #include "m2m/mesh.hpp"
+#include "m2m/tally.hpp"
 #include "m2m/worst_places.hpp"
 
 #include <array>
@@ -13,6 +14,12 @@
 #include <vector>
 
 namespace m2m_transfer {
+
+/// Elements of a file that are not tetrahedra.
+struct OtherElements {
+  std::string skipped{};  ///< without volume: "120 TRI3"
+  std::string split{};    ///< "27 HEX8 into 162 tetrahedra"
+};
 
 /// The cost of a transfer besides time.
 struct Footprint {
@@ -42,18 +49,15 @@ struct FieldError {
 
 struct TransferReport {
   std::string source, target, policy, kind, machine;
-  std::string source_skipped, target_skipped;  ///< elements without volume: "120 TRI3"
-  std::string source_split, target_split;      ///< elements cut: "27 HEX8 into 162 tetrahedra"
+  OtherElements source_elements, target_elements;
   std::int32_t pes = 0, processes = 0, chares = 0;
   std::size_t source_tets = 0, targets = 0;
-  double source_edge = 0;                 ///< of a cube with the volume of six average tetrahedra
-  std::array<std::uint64_t, 4> counts{};  ///< per Status, from the last search
-  WorstPlaces worst;                      ///< of the last search
+  double source_edge = 0;  ///< of a cube with the volume of six average tetrahedra
+  Tally tally;             ///< of the last search
+  WorstPlaces worst;       ///< of the last search
   std::int32_t searches = 1;
   std::vector<FieldError> fields;
   Point worst_at{};  ///< the vertex with the largest error of the first field
-  std::uint64_t n_candidates = 0;
-  std::uint64_t n_kept_sources = 0;  ///< in the last search
   double voxel = 0;
   PhaseSeconds seconds;
   Footprint footprint;  ///< bytes_sent: by setup and the first transfers of all pairs

@@ -4,11 +4,12 @@
 #include "apps/overset/body.hpp"
 #include "apps/overset/report.hpp"
 #include "apps/overset/wall_study.hpp"
+#include "apps/plot/file_names.hpp"
 #include "apps/plot/write_file.hpp"
+#include "runtime/core/number.hpp"
 #include "runtime/runtime.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
@@ -79,20 +80,17 @@ tess::Task time_wall(Options options) {
 /// The numbers of "kuhn:16,24,32".
 std::vector<std::int32_t> refinements_of(const std::string& background) {
   std::vector<std::int32_t> out;
-  const std::string text = background.starts_with("kuhn:") ? background.substr(5) : "";
-  const char* at = text.data();
-  const char* const end = at + text.size();
-  while (at != end) {
-    std::int32_t n = 0;
-    const auto [after, error] = std::from_chars(at, end, n);
-    const bool ends_well = after == end || (*after == ',' && after + 1 != end);
-    if (error != std::errc() || !ends_well || n < 4 || n > 400 || n % 2 != 0 ||
-        (!out.empty() && n <= out.back()))
-      break;
+  std::string_view text = background;
+  bool more = text.starts_with("kuhn:");
+  if (more) text.remove_prefix(5);
+  while (more) {
+    const std::int32_t n = tess::take_number<std::int32_t>(text).value_or(0);
+    if (n < 4 || n > 400 || n % 2 != 0 || (!out.empty() && n <= out.back())) break;
     out.push_back(n);
-    at = after == end ? end : after + 1;
+    more = text.starts_with(',');
+    if (more) text.remove_prefix(1);
   }
-  if (at != end || out.size() < 2)
+  if (more || !text.empty() || out.size() < 2)
     tess::fail(tess::ErrorCode::bad_argument, "--study h: BACKGROUND ", background,
                " is no ladder; give two or more even numbers from 4 to 400 in ascending order, as "
                "in kuhn:16,24,32");
@@ -121,9 +119,9 @@ void read_study(Options& options, bool has_background, bool has_overset) {
     options.given_for_once.insert(options.given_for_once.begin(), "BACKGROUND " + background);
 }
 
-/// Throws Error (bad_argument) for an option that a study does not use, and for a folder where the
-/// files of --plot would replace an input.
-void refuse_contradictions(const Options& options) {
+/// Throws Error (bad_argument) for an option that a study does not use, and where a file would
+/// replace an input or another output. `trace`: that of the runtime's option.
+void refuse_contradictions(const Options& options, const std::string& trace) {
   const std::string study = "--study " + options.study;
   const auto refuse = [&](const std::string& option) { apps::refuse_together(option, study); };
   if (!options.study.empty()) {
@@ -135,13 +133,15 @@ void refuse_contradictions(const Options& options) {
       refuse(options.given_for_once.front());
     return;
   }
+  plot::FileNames names;
+  names.reads("BACKGROUND", options.request.background);
+  names.reads("OVERSET", options.request.overset);
+  names.reads("--wall", options.request.wall);
+  names.writes("--trace " + trace, trace);
+  names.writes("--json " + options.json, options.json);
   for (const char* file : {"background.exo", "overset.exo", "before.svg", "after.svg"})
-    for (const std::string& input :
-         {options.request.background, options.request.overset, options.request.wall})
-      if (!options.plot.empty() &&
-          plot::is_same_file(std::filesystem::path(options.plot) / file, input))
-        tess::fail(tess::ErrorCode::bad_argument, "--plot ", options.plot, " would overwrite ",
-                   input, "; give another folder");
+    if (!options.plot.empty())
+      names.writes("--plot " + options.plot, std::filesystem::path(options.plot) / file);
 }
 
 int run(tess::Setup& setup, int argc, char** argv) {
@@ -185,7 +185,7 @@ int run(tess::Setup& setup, int argc, char** argv) {
     if (line.is_given(option)) options.given_for_once.emplace_back(option);
   if (!options.study.empty())
     read_study(options, line.is_given("BACKGROUND"), line.is_given("OVERSET"));
-  refuse_contradictions(options);
+  refuse_contradictions(options, setup.options.trace);
   return tess::run(setup, [&] {
     if (options.study.empty()) return run_once(options);
     return options.study == "h" ? run_refined(options) : time_wall(options);

@@ -5,6 +5,7 @@
 #include "apps/particles/output/files.hpp"
 #include "apps/particles/output/report.hpp"
 #include "apps/particles/stability/cases.hpp"
+#include "apps/plot/file_names.hpp"
 #include "apps/plot/write_file.hpp"
 #include "runtime/balance/strategy.hpp"
 #include "runtime/runtime.hpp"
@@ -114,7 +115,11 @@ int run(tess::Setup& setup, int argc, char** argv) {
     tess::print(scene_help());
     return 0;
   }
-  if (!balance.empty()) options.run.balance = tess::parse_balance(balance);
+  plot::FileNames names;
+  names.reads("SCENE", options.scene);
+  names.writes("--json " + options.json, options.json);
+  names.writes("--trace " + setup.options.trace, setup.options.trace);
+  if (line.is_given("--balance")) options.run.balance = tess::parse_balance(balance);
   if (stability) {
     const auto rows = tess::dn::stability_report();
     if (setup.machine->process().value == 0) tess::print(tess::dn::text_of(rows));

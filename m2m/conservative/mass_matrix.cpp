@@ -52,7 +52,7 @@ MassMatrix::MassMatrix(const MeshView& mesh, std::span<const std::int32_t> numbe
   for (std::size_t v = 0; v < n_owned; ++v) {
     const double diagonal = inverse_[v] + rest_[v];
     inverse_[v] = diagonal > 0 ? 1 / diagonal : 0;
-    if (whole[v] > 0) fractions_[v] = std::min(lumped_[v] / whole[v], 1.0);
+    if (whole[v] > 0) fractions_[v] = lumped_[v] / whole[v];
   }
 }
 

@@ -38,7 +38,8 @@ class MassMatrix {
   [[nodiscard]] std::size_t n_owned() const noexcept { return lumped_.size(); }
   /// Per point owned: the row sum of M, zero if the point is not covered.
   [[nodiscard]] std::span<const double> lumped() const noexcept { return lumped_; }
-  /// Per point owned: the row sum of M relative to that of a mesh that is covered.
+  /// Per point owned: the row sum of M relative to that of a mesh that is covered; above 1 where the
+  /// source overlaps itself.
   [[nodiscard]] std::span<const double> covered_fractions() const noexcept { return fractions_; }
   /// Per point owned: 1 / M_ii, zero if the point is not covered.
   [[nodiscard]] std::span<const double> inverse_diagonal() const noexcept { return inverse_; }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace tess::m2m {
 namespace {
@@ -149,6 +150,21 @@ void ElementSplitter::append_side(GlobalId element, std::int64_t side,
   }
 }
 
+std::uint64_t ElementSplitter::n_folded(GlobalId begin, GlobalId end) const {
+  constexpr double rounding = 1e-9;  // relative to the volume of the element
+  std::uint64_t n = 0;
+  for (GlobalId t = begin; t < end;) {
+    double right = 0, left = 0;
+    for (const GlobalId element = mesh_.element_of_tet[static_cast<std::size_t>(t)];
+         t < end && mesh_.element_of_tet[static_cast<std::size_t>(t)] == element; ++t) {
+      const double volume = signed_volume(mesh_, static_cast<std::size_t>(t));
+      (volume > 0 ? right : left) += std::abs(volume);
+    }
+    n += std::min(right, left) > rounding * (right + left) ? 1U : 0U;
+  }
+  return n;
+}
+
 void ElementSplitter::finish() {
   const bool any = std::any_of(runs_.begin(), runs_.end(),
                                [](const Run& run) { return run.type != ElementType::tet4; });
@@ -177,6 +193,7 @@ void ElementSplitter::finish() {
                                : mesh_.split.emplace_back(SplitElements{name_of(run.type)});
     split.n_elements += run.first_tets.size();
     split.n_tets += static_cast<std::uint64_t>(end - run.first_tet);
+    split.n_folded += n_folded(run.first_tet, end);
   }
 }
 

@@ -51,7 +51,7 @@ class ElementSplitter {
   [[nodiscard]] std::size_t n_sides_of(GlobalId element) const;
   /// Appends the faces that make up a side of an element.
   void append_side(GlobalId element, std::int64_t side, std::vector<Side>& sides) const;
-  /// Fills mesh.split and mesh.element_of_tet.
+  /// Fills mesh.split and mesh.element_of_tet. The points of the mesh are there.
   void finish();
 
  private:
@@ -64,6 +64,8 @@ class ElementSplitter {
     std::vector<GlobalId> first_tets{};  // per element
   };
   [[nodiscard]] const Run* run_of(GlobalId element) const;
+  /// Elements with tetrahedra of both orientations, of those that the tetrahedra in a range make up.
+  [[nodiscard]] std::uint64_t n_folded(GlobalId begin, GlobalId end) const;
 
   TetMesh& mesh_;
   std::vector<Run> runs_;

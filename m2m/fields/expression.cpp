@@ -1,10 +1,10 @@
 #include "m2m/fields/expression.hpp"
 
 #include "runtime/core/error.hpp"
+#include "runtime/core/number.hpp"
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <numbers>
 #include <string_view>
@@ -147,12 +147,11 @@ class Parser {
   }
 
   void number() {
-    double value = 0;
-    const auto [end, error] =
-        std::from_chars(text_.data() + at_, text_.data() + text_.size(), value);
-    if (error != std::errc()) wrong("expected a number");
-    at_ = static_cast<std::size_t>(end - text_.data());
-    emit(Op::number, value);
+    std::string_view rest = text_.substr(at_);
+    const auto value = take_number<double>(rest);
+    if (!value) wrong("expected a number");
+    at_ = text_.size() - rest.size();
+    emit(Op::number, *value);
   }
 
   static bool is_digit(char c) { return c >= '0' && c <= '9'; }

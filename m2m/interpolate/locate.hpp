@@ -97,7 +97,7 @@ void locate_pairs(std::span<const Point> points, std::span<const Tet> tets,
 }
 
 /// Interpolates one component of a field; the value of a vertex is values[vertex * stride]. A
-/// weight of 1 copies the value bit for bit.
+/// weight of 1 copies the value bit for bit; a weight of 0 takes nothing, not even of NaN.
 [[nodiscard]] inline double interpolated(const Weights& weights, const Tet& tet,
                                          const double* values, std::size_t stride) {
   const auto value = [&](std::size_t corner) {
@@ -106,8 +106,10 @@ void locate_pairs(std::span<const Point> points, std::span<const Tet> tets,
   for (std::size_t corner = 0; corner < 4; ++corner) {
     if (weights[corner] == 1) return value(corner);
   }
-  return (weights[0] * value(0) + weights[1] * value(1)) +
-         (weights[2] * value(2) + weights[3] * value(3));
+  const auto part = [&](std::size_t corner) {
+    return weights[corner] == 0 ? 0.0 : weights[corner] * value(corner);
+  };
+  return (part(0) + part(1)) + (part(2) + part(3));
 }
 
 }  // namespace tess::m2m

@@ -15,6 +15,8 @@ namespace {
 
 /// What is covered to a smaller fraction of its volume counts as not covered.
 constexpr double no_coverage = 1e-12;
+/// What is covered to a larger fraction is covered more than once; less is rounding.
+constexpr double over_coverage = 1 + 1e-9;
 
 double volume_of(const MeshView& mesh, const Tet& tet) {
   const auto c = corners_of(mesh.points, tet);
@@ -179,6 +181,10 @@ std::vector<collide::OwnerId> OverlapTarget::finish_search(const MeshView& mesh)
                       : fraction >= 1 - no_coverage ? Status::inside
                                                     : Status::snapped);
     ++tally_.counts[static_cast<std::size_t>(status_.back())];
+    if (fraction > over_coverage) {
+      ++tally_.n_overcovered;
+      tally_.most_covered = std::max(tally_.most_covered, fraction);
+    }
   }
   std::vector<collide::OwnerId> out;
   for (auto& [piece, neighbour] : neighbours_) {

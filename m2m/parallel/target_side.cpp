@@ -159,11 +159,12 @@ TargetSide::Addressed<Choice> TargetSide::choices(const MeshView& mesh) {
     distance_[v] = best_[v].candidate.distance;  // infinite if outside
     ++tally_.counts[static_cast<std::size_t>(status_[v])];
   }
-  const bool gives_nearest = std::holds_alternative<Nearest>(setup.policy);
+  const bool takes_outside = std::holds_alternative<Nearest>(setup.policy);
   for (const NearestSoFar& nearest : nearest_) {
     const auto row = static_cast<std::size_t>(nearest.row);
-    if (status_[row] == Status::outside) distance_[row] = std::sqrt(nearest.squared_distance);
-    if (nearest.vertex < 0 || !gives_nearest) continue;
+    const bool is_outside = status_[row] == Status::outside;
+    if (is_outside) distance_[row] = std::sqrt(nearest.squared_distance);
+    if (nearest.vertex < 0 || (is_outside && !takes_outside)) continue;
     all[nearest.source].vertices.push_back(nearest.vertex);
     rows_[nearest.source].push_back(nearest.row);
   }

@@ -2,10 +2,10 @@
 
 #include "runtime/core/error.hpp"
 #include "runtime/core/hash.hpp"
+#include "runtime/core/number.hpp"
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <fstream>
 
@@ -18,16 +18,15 @@ struct Value {
   std::string place, text;
 
   /// What stands before the unit.
-  double number(std::string* unit) const {
-    double number = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-    if (error != std::errc() || !std::isfinite(number))
+  double number(std::string_view* unit) const {
+    *unit = text;
+    const auto number = take_number<double>(*unit);
+    if (!number || !std::isfinite(*number))
       fail(ErrorCode::bad_argument, place, ": ", text, " is not a number");
-    *unit = std::string(end, text.data() + text.size());
-    return number;
+    return *number;
   }
   [[nodiscard]] Time time() const {
-    std::string unit;
+    std::string_view unit;
     const double value = number(&unit);
     const double factor = unit.empty() || unit == "ns" ? 1
                           : unit == "us"               ? 1e3
@@ -41,7 +40,7 @@ struct Value {
     return Time(std::llround(value * factor));
   }
   [[nodiscard]] double rate() const {
-    std::string unit;
+    std::string_view unit;
     const double value = number(&unit);
     const double factor = unit == "GB/s" ? 1e9 : unit == "MB/s" ? 1e6 : unit.empty() ? 1 : -1;
     if (factor < 0 || value <= 0)
@@ -50,7 +49,7 @@ struct Value {
     return value * factor;
   }
   [[nodiscard]] std::int64_t whole(std::int64_t least, std::int64_t most) const {
-    std::string unit;
+    std::string_view unit;
     const double value = number(&unit);
     if (!unit.empty() || value < static_cast<double>(least) || value > static_cast<double>(most) ||
         value != std::floor(value))
@@ -59,7 +58,7 @@ struct Value {
     return static_cast<std::int64_t>(value);
   }
   [[nodiscard]] double probability() const {
-    std::string unit;
+    std::string_view unit;
     const double value = number(&unit);
     if (!unit.empty() || value < 0 || value > 1)
       fail(ErrorCode::bad_argument, place, ": ", text, " is not a probability of 0 … 1");

@@ -11,6 +11,7 @@
 namespace tess::detail {
 namespace {
 
+constexpr std::uint64_t never = ~std::uint64_t{0};
 constexpr double quantum_seconds = 1e-3;
 constexpr double gap_seconds =
     30e-6;  // no step and no check of the queue for so long: the thread slept
@@ -26,7 +27,7 @@ Meter::Meter(Machine& machine, PeId pe)
       made_(now()),
       since_(made_),
       step_began_(made_),
-      quantum_ticks_(ticks(quantum_seconds)),
+      quantum_ticks_(virtual_ ? never : ticks(quantum_seconds)),
       gap_ticks_(ticks(gap_seconds)) {}
 
 void Meter::watch_enters(const Action* action) {
@@ -64,11 +65,9 @@ void Meter::step_begins() {
 void Meter::step_ends() {
   const std::uint64_t at = now();
   busy_ += at - step_began_;
+  step_began_ = at;
   last_seen_ = at;
-  if (!virtual_ && at - quantum_began_ > quantum_ticks_) {
-    end_quantum(at);
-    begin_quantum(at);
-  }
+  if (at - quantum_began_ > quantum_ticks_) quantum_passes(at);
 }
 
 void Meter::idle() {
@@ -82,9 +81,16 @@ void Meter::begin_quantum(std::uint64_t at) {
   longest_ticks_ = 0;
 }
 
+void Meter::quantum_passes(std::uint64_t at) {
+  busy_ += at - step_began_;
+  step_began_ = at;
+  end_quantum(at);
+  begin_quantum(at);
+}
+
 void Meter::end_quantum(std::uint64_t at) {
   const double stolen = seconds(at - quantum_began_) - (thread_cpu_seconds() - cpu_at_begin_);
-  if (stolen < noise_seconds || longest_.record == nullptr) return;
+  if (!(stolen >= noise_seconds) || longest_.record == nullptr) return;
   const std::uint64_t back = std::min(ticks(stolen), longest_ticks_);
   LoadRecord& record = *longest_.record;
   busy_ -= std::min(back, busy_);

@@ -3,10 +3,10 @@
 // of a null pointer.
 //
 // Scopes nest (a constructor inside a handler); time counts for the innermost scope. It is read
-// from the cycle counter, which continues while the kernel runs another thread. So about once per
-// millisecond (a quantum) the PE's thread reads its CPU time. The excess of the counter was stolen
-// by other threads and is subtracted from the longest call of the quantum, since a preempted call
-// is long. On the simulated machine the meter reads the virtual clock, from which no time is
+// from the cycle counter, which continues while the kernel runs another thread. So after each call
+// that ends a millisecond or more after the last time (a quantum) the PE's thread reads its CPU
+// time. The excess of the counter was stolen by other threads and is subtracted from the longest
+// call of the quantum, since a preempted call is long. On the simulated machine the meter reads the virtual clock, from which no time is
 // stolen.
 //
 //   step_begins  [ enter … [ enter … leave ] … leave ]*  step_ends   idle …
@@ -18,6 +18,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -66,6 +67,8 @@ class Meter {
     if (watched_ != nullptr) watch_leaves();
     if (listener_ != nullptr) [[unlikely]]
       tell(at);
+    if (at - quantum_began_ > quantum_ticks_) [[unlikely]]
+      quantum_passes(at);  // a step may be long: a broadcast to all elements is one
     const Scope ended = std::exchange(scope_, outer);
     if (at >= alarm_at_ && ended.record != nullptr) [[unlikely]]
       ring(at);
@@ -119,6 +122,7 @@ class Meter {
   void ring(std::uint64_t at);
   void begin_quantum(std::uint64_t at);
   void end_quantum(std::uint64_t at);
+  void quantum_passes(std::uint64_t at);
 
   Machine& machine_;
   const PeId pe_;
@@ -134,7 +138,7 @@ class Meter {
   // The quantum: its start, the CPU time at its start, and its longest call.
   const std::uint64_t quantum_ticks_, gap_ticks_;
   std::uint64_t quantum_began_ = 0;
-  double cpu_at_begin_ = 0;
+  double cpu_at_begin_ = std::numeric_limits<double>::quiet_NaN();  // until the first begins
   std::uint64_t last_seen_ = 0;
   Scope longest_;
   std::uint64_t longest_ticks_ = 0;

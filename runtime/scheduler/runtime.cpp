@@ -307,7 +307,7 @@ void Runtime::on_census_asked(Pe& pe) {
   send_uncounted<&census_arrives>(
       pe, PeId{0},
       Census{pe.census(), pe.statistics().dead_letters, std::move(empty), pe.stopped(),
-             pe.completion().run_sent(), pe.audit_rows()});
+             pe.completion().run_sent(), pe.timers().n_periodic(), pe.audit_rows()});
 }
 
 void Runtime::on_census(Pe& pe, Census&& census) {
@@ -320,6 +320,7 @@ void Runtime::on_census(Pe& pe, Census&& census) {
       census_.empty.push_back(std::move(array));
   census_.exits = census_.exits || census.exits;
   census_.n_sent += census.n_sent;
+  census_.n_periodic += census.n_periodic;
   if (--n_answers_ != 0) return;
   takes_census_ = false;
   if (census_.exits) return;
@@ -344,6 +345,9 @@ void Runtime::end_with_census(Pe& pe) {
     // A waiter for such a result does not know the array that it comes from.
     for (const EmptyArray& array : census_.empty)
       report += text("\n  note: ", array.name, " has no elements: its reductions have no result");
+    if (const std::uint64_t n = census_.n_periodic; n != 0)
+      report += text("\n  note: ", n, n == 1 ? " timer of every() is" : " timers of every() are",
+                     " set: a run does not wait for their next calls");
     error_line(report);
     end_with(pe, 1);
     return;

@@ -147,6 +147,7 @@ class Runtime final : public Program {
     std::vector<EmptyArray> empty;  // what has nothing to reduce on this PE
     bool exits = false;  // exit() was called: its message is under way, not counted in epoch 0
     std::uint64_t n_sent = 0;  // messages of epoch 0 that this PE has sent; its timers are frozen
+    std::uint64_t n_periodic = 0;  // timers
     std::vector<AuditRow> audit;
   };
   void run_main(Pe& pe);

@@ -79,6 +79,9 @@ Timers::~Timers() {
 std::size_t Timers::n_waiting() const {
   return tables_->once.size();
 }
+std::size_t Timers::n_periodic() const {
+  return tables_->periodic.size();
+}
 
 void Timers::drop_all() {
   for (const auto& [key, message] : tables_->waiting) discard(message);

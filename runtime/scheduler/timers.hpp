@@ -59,6 +59,7 @@ class Timers {
 
   /// The number of timers that run once and have not run yet.
   [[nodiscard]] std::size_t n_waiting() const;
+  [[nodiscard]] std::size_t n_periodic() const;
 
   /// Forgets all timers that wait, without running them: the run is over.
   void drop_all();

@@ -53,6 +53,8 @@ refuses "--voxel: -1 is not a number above 0" "${transfer[@]}" kuhn:2 kuhn:2 --v
 refuses "^m2m_transfer: error: --voxel 1e-12 .* at least" "${transfer[@]}" kuhn:2 kuhn:2 --pes 2 --voxel 1e-12
 refuses --sim "${transfer[@]}" kuhn:2 kuhn:2 --sim pes=none
 refuses --pes "$bin/hello" --pes 0
+"$bin/hello" >/dev/full 2>"$scratch/err"
+[[ $? -eq 2 ]] && grep -q "standard output: a part of it could not be written" "$scratch/err" && pass || fail "lost output is no error"
 refuses "--pes: 100000 is not a whole number from 1 to 4096" "$bin/hello" --pes 100000
 # Threads with stacks of a gigabyte, for a few of which there is room.
 few_threads() {
@@ -108,7 +110,15 @@ refuses "r.pvtu: fields of files are gathered" "${alone[@]}" --out "$scratch/r.p
 refuses "missing/r.pvtu" "${alone[@]}" --out "$scratch/missing/r.pvtu"
 refuses "cut.png: a picture's name must end in .svg" "${alone[@]}" --picture "$scratch/cut.png"
 refuses "would overwrite --out" "${alone[@]}" --out "$scratch/same.exo" --json "$scratch/same.exo"
+refuses "would overwrite SOURCE" "$bin/m2m_transfer" "$scratch/kept.msh" kuhn:2 --trace "$scratch/kept.msh"
+refuses "would overwrite OVERSET" "$bin/overset" kuhn:8 "$scratch/kept.msh" --json "$scratch/kept.msh"
 cmp -s "$scratch/box.msh" "$scratch/kept.msh" || fail "a mesh that is read was overwritten"
+# Names that --out derives, of parts and of several results.
+"$bin/m2m_transfer" kuhn:2 kuhn:2 --out "$scratch/r.1.vtu" >"$scratch/out"
+"$bin/m2m_transfer" kuhn:2 kuhn:2 --out "$scratch/r.B.exo" >"$scratch/out"
+refuses "would overwrite SOURCE" "$bin/m2m_transfer" "$scratch/r.1.vtu" kuhn:2 --fields x --chares 2 --out "$scratch/r.pvtu"
+refuses "would overwrite SOURCE" "$bin/m2m_transfer" "$scratch/r.B.exo" kuhn:3 kuhn:2 --fields x --pairs A:B,A:C --out "$scratch/r.exo"
+"$bin/m2m_transfer" "$scratch/r.B.exo" kuhn:3 --fields x --out "$scratch/r.exo" >"$scratch/out" || fail "one result has the name given"
 refuses kind "${transfer[@]}" kuhn:2 kuhn:2 --kind perhaps
 refuses "--plot" "$bin/m2m_transfer" kuhn:2 kuhn:3 --study kind --plot "$scratch/empty.exo"
 refuses missing.msh "$bin/m2m_transfer" --json "$scratch/result.json" "$scratch/missing.msh" --stability

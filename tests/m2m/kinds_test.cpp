@@ -66,9 +66,10 @@ KindResult result_of(const KindCase& c, std::uint64_t seed) {
 struct KindCut {
   TransferKind kind{};
   std::int32_t n_parts = 1;
+  OutsidePolicy policy = Keep{};
 };
 Task transfer_linear(const TetMesh& from, const TetMesh& to, KindCut cut,
-                     std::vector<double>& values) {
+                     std::vector<double>& values, TransferSummary& summary) {
   Field field{"f", 1, {}};
   for (const Point& p : from.points) field.values.push_back(test::linear_at(p));
   DistributedMesh source, target;
@@ -78,7 +79,7 @@ Task transfer_linear(const TetMesh& from, const TetMesh& to, KindCut cut,
     target = scatter(to, {{"f", 1, std::vector<double>(to.n_points())}}, cut.n_parts,
                      PartitionMethod::curve, target_halo_layers(cut.kind));
   });
-  co_await transfer(source, target, {.kind = cut.kind}, nullptr);
+  co_await transfer(source, target, {.policy = cut.policy, .kind = cut.kind}, &summary);
   Future<Outcome> outcome;
   target.workers.broadcast<&Worker::gather>(outcome.callback());
   const Outcome all = co_await outcome;
@@ -87,10 +88,13 @@ Task transfer_linear(const TetMesh& from, const TetMesh& to, KindCut cut,
     values[static_cast<std::size_t>(all.points[i])] = all.values[i];
 }
 std::vector<double> linear_result(const TetMesh& from, const TetMesh& to, KindCut cut,
-                                  std::uint64_t seed) {
+                                  std::uint64_t seed, Tally* tally = nullptr) {
   const test::Machine machine{.pes = 1 + static_cast<int>(seed % 4), .seed = seed};
   std::vector<double> values;
-  machine.run([&]() -> Task { return transfer_linear(from, to, cut, values); }).require_success();
+  TransferSummary summary;
+  machine.run([&]() -> Task { return transfer_linear(from, to, cut, values, summary); })
+      .require_success();
+  if (tally != nullptr) *tally = summary.tally;
   return values;
 }
 
@@ -117,6 +121,39 @@ TEST_CASE("a vertex that no tetrahedron uses is the nearest of no point", "[m2m]
     // Of many parts most have no tetrahedron, and one of these has the vertex.
     const KindCut cut{TransferKind::nearest, static_cast<std::int32_t>(seed % 2 == 0 ? seed : 40)};
     test::expect(linear_result(with_unused, target, cut, seed) == want, "it gives its value");
+  });
+}
+
+TEST_CASE("the nearest vertex gives its value outside, too, unless the policy is a value",
+          "[m2m][kinds]") {
+  const TetMesh source = read_mesh("kuhn:2");
+  TetMesh target = read_mesh("kuhn:3");
+  for (Point& p : target.points) p[0] += 0.6;
+  const KindCut nearest{TransferKind::nearest, 3};
+  const std::vector<double> all = linear_result(source, target, nearest, 1);
+  test::for_seeds(1, 1 + test::n_seeds(8), [&](std::uint64_t seed) {
+    const auto parts = static_cast<std::int32_t>(1 + seed % 5);
+    const std::vector<double> some =
+        linear_result(source, target, {TransferKind::nearest, parts, UseValue{-7}}, seed);
+    for (std::size_t v = 0; v < all.size(); ++v)
+      test::expect(some[v] == (target.points[v][0] > 1 ? -7 : all[v]), "vertex ", v, " has ",
+                   some[v]);
+  });
+}
+
+TEST_CASE("what a conservative source covers more than once is counted", "[m2m][kinds]") {
+  const TetMesh source = read_mesh("kuhn:2"), target = read_mesh("kuhn:3@0.2");
+  TetMesh doubled = source;
+  doubled.tets.insert(doubled.tets.end(), source.tets.begin(), source.tets.begin() + 6);
+  test::for_seeds(1, 1 + test::n_seeds(8), [&](std::uint64_t seed) {
+    const KindCut cut{TransferKind::conservative, static_cast<std::int32_t>(1 + seed % 5)};
+    Tally once, twice;
+    (void)linear_result(source, target, cut, seed, &once);
+    (void)linear_result(doubled, target, cut, seed, &twice);
+    test::expect(once.n_overcovered == 0 && once.most_covered == 0, once.n_overcovered);
+    test::expect(twice.n_overcovered > 0 && twice.n_overcovered < target.n_points() &&
+                     twice.most_covered > 1.5 && twice.most_covered < 2 + 1e-12,
+                 twice.n_overcovered, " up to ", twice.most_covered);
   });
 }
 

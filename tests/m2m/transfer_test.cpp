@@ -266,7 +266,7 @@ TEST_CASE("vertices outside are counted, and get the value of the policy", "[m2m
       CHECK(moved.values[v] == Approx(wanted));
     }
   }
-  for (const char* text : {"", "value:", "value:x", "value:nan", "value:1 ", "drop"}) {
+  for (const char* text : {"", "value:", "value:x", "value:inf", "value:1 ", "drop"}) {
     CHECK_THAT(message_of([&] { (void)parse_policy(text); }),
                Catch::Contains("choose keep, nearest or value:NUMBER"));
   }

@@ -304,6 +304,15 @@ tess::Task votes_of(std::vector<int> voters) {
   tess::exit(0);
 }
 
+tess::Task await_every() {
+  tess::Future<void> third;
+  int n = 0;
+  (void)tess::every(std::chrono::milliseconds(1), [&] {
+    if (++n == 3) third.callback()();
+  });
+  co_await third;
+}
+
 tess::Task any_of_none() {
   std::vector<tess::Future<int>> none;
   (void)co_await tess::when_any(std::move(none));
@@ -443,6 +452,7 @@ const std::map<std::string, std::function<void()>> misuses{
     {"insert_between_rounds", [] { const tess::Task task = insert_between_rounds(); }},
     {"different_operations", [] { const tess::Task task = sum_scaled(); }},
     {"any_of_none", [] { const tess::Task task = any_of_none(); }},
+    {"await_every", [] { const tess::Task task = await_every(); }},
     {"different_values", [] { const tess::Task task = sum_different(); }},
     {"empty_proxy", [] { tess::ElementProxy<Block>().send<&Block::nothing>(); }},
     {"empty_array", [] { tess::ArrayProxy<Block>().broadcast<&Block::nothing>(); }},

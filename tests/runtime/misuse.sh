@@ -57,6 +57,7 @@ here check_inserted "the mould is wrong" "on PE 0, Block\[7\], in the constructo
 everywhere different_targets "contributions to one reduction have different targets: " "Block::take of Block\\[0\\]" "Block::take of Block\\[1\\]"
 everywhere insert_between_rounds "Overlap\[1\] was created after broadcast 1 and contributes to Overlap: reduction 0, to which broadcast 1 led: rounds overlap; insert elements while no round is under way"
 here different_operations "operations .*Scaled of different state"
+here await_every "deadlock: .* 1 wait" "waits for a future of void" "note: 1 timer of every() is set: a run does not wait"
 everywhere different_values "contributions to one reduction have different values, operations or results: .*MergedPartial<int, \\(Sum\\|Max\\), int> and "
 here any_of_none "when_any() of an empty vector has no first result: give at least one"
 here empty_proxy "a message to an empty ElementProxy<.*Block>: assign array\\[index\\] to it first"

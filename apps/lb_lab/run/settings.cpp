@@ -3,9 +3,9 @@
 #include "runtime/balance/prediction.hpp"
 #include "runtime/balance/strategy.hpp"
 #include "runtime/core/error.hpp"
+#include "runtime/core/number.hpp"
 
 #include <algorithm>
-#include <charconv>
 
 namespace lb_lab {
 namespace {
@@ -59,12 +59,10 @@ void expand_names(Settings& s) {
 }  // namespace
 
 double parse_time(std::string_view option, std::string_view value) {
-  double count = 0;
-  const char* const last = value.data() + value.size();
-  const auto [end, error] = std::from_chars(value.data(), last, count);
-  const std::string_view unit(end, static_cast<std::size_t>(last - end));
+  std::string_view unit = value;
+  const double count = tess::take_number<double>(unit).value_or(0);
   const double unit_seconds = unit == "us" ? 1e-6 : unit == "ms" ? 1e-3 : unit == "s" ? 1 : 0;
-  if (error != std::errc() || !(count * unit_seconds > 0) || count * unit_seconds > 1e6)
+  if (!(count * unit_seconds > 0) || count * unit_seconds > 1e6)
     refuse(option, ": ", value, " is not a time above 0; give 250us, 1ms, 0.5s or the like");
   return count * unit_seconds;
 }

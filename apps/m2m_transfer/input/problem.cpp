@@ -66,6 +66,16 @@ Task read_one(Problem& problem, std::size_t m) {
   sample_fields(problem, m);
 }
 
+/// Fields that a file has do not get here.
+Formula formula_of(const std::string& name, const Aabb& domain, const std::string& source) {
+  try {
+    return make_formula(name, domain);
+  } catch (const Error& error) {
+    if (source.starts_with("kuhn:")) throw;
+    fail(error.code(), error.what(), "; ", source, " holds no field of that name");
+  }
+}
+
 /// The first source is surveyed before the others: the formulas depend on its bounds. It is sampled
 /// when it is placed.
 Task read_meshes(const Request& request, Problem& problem) {
@@ -76,7 +86,7 @@ Task read_meshes(const Request& request, Problem& problem) {
   for (const std::string& option : request.fields)
     for (const std::string& name : split_at_commas(option)) {
       problem.field_names.push_back(name);
-      problem.formulas.push_back(make_formula(name, problem.domain));
+      problem.formulas.push_back(formula_of(name, problem.domain, source.name));
     }
   if (source.mesh) sample_fields(problem, first);
   std::vector<Task> tasks;
@@ -91,10 +101,8 @@ TransferReport report_of(const Problem& problem, const Pair& pair, const Request
   const RunMesh& target = problem.target_of(pair);
   report.source = source.name;
   report.target = target.name;
-  report.source_skipped = source.survey.skipped;
-  report.target_skipped = target.survey.skipped;
-  report.source_split = source.survey.split;
-  report.target_split = target.survey.split;
+  report.source_elements = {source.survey.skipped, source.survey.split};
+  report.target_elements = {target.survey.skipped, target.survey.split};
   report.policy = request.policy;
   report.kind = request.kind;
   report.machine = machine().describe();

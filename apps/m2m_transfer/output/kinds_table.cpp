@@ -32,7 +32,7 @@ std::string kinds_table(const std::vector<TransferReport>& reports) {
           "  {:<20} {:<{}} {:<{}} {:>8} {:>11.4e} {:>11.4e} {:>11.4e} {:>10.2e} {:>9.4f} {:>9.4f}  "
           "{:016x}\n",
           f == 0 && (last == nullptr || last->kind != r.kind) ? r.kind : "",
-          f == 0 ? pair_text(r) : "", wide_pair, field.name, wide_field, r.counts[3],
+          f == 0 ? pair_text(r) : "", wide_pair, field.name, wide_field, r.tally.counts[3],
           field.norms.l2, field.norms.l2_relative, field.norms.linf,
           field.target_integral - field.source_integral, r.seconds.broad + r.seconds.narrow,
           r.seconds.apply, r.result_hash);

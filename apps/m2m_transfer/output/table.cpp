@@ -1,6 +1,7 @@
 #include "apps/m2m_transfer/output/table.hpp"
 
 #include "apps/m2m_transfer/output/farthest.hpp"
+#include "apps/m2m_transfer/output/found.hpp"
 #include "apps/plot/json_text.hpp"
 
 #include <array>
@@ -51,24 +52,27 @@ nlohmann::ordered_json pair_of(const TransferReport& r) {
   nlohmann::ordered_json pair;
   pair["source"] = r.source;
   pair["target"] = r.target;
-  pair["skipped"] = {{"source", r.source_skipped}, {"target", r.target_skipped}};
-  pair["split"] = {{"source", r.source_split}, {"target", r.target_split}};
+  pair.update(json_of(r.source_elements, r.target_elements));
   pair["targets"] = r.targets;
-  pair["inside"] = r.counts[0];
-  pair["boundary"] = r.counts[1];
-  pair["snapped"] = r.counts[2];
-  pair["outside"] = r.counts[3];
+  pair["inside"] = r.tally.counts[0];
+  pair["boundary"] = r.tally.counts[1];
+  pair["snapped"] = r.tally.counts[2];
+  pair["outside"] = r.tally.counts[3];
+  if (is_conservative(parse_transfer_kind(r.kind))) {
+    pair["overcovered"] = r.tally.n_overcovered;
+    pair["most_covered"] = r.tally.most_covered;
+  }
   pair["farthest"] = json_of(r.worst);
   pair.update(norms_of(r.fields.front().norms));
   pair["found"] = found_of(r.fields.front().found);
-  pair["candidates"] = r.n_candidates;
+  pair["candidates"] = r.tally.n_candidates;
   pair["seconds"] = {{"read", r.seconds.read},    {"setup", r.seconds.setup},
                      {"broad", r.seconds.broad},  {"narrow", r.seconds.narrow},
                      {"apply", r.seconds.apply},  {"transfer", r.seconds.transfer()},
                      {"gather", r.seconds.gather}};
   if (r.searches > 1) pair["seconds"]["search_again"] = r.seconds.again;
   pair["searches"] = r.searches;
-  pair["kept_sources"] = r.n_kept_sources;
+  pair["kept_sources"] = r.tally.n_kept_sources;
   pair["peak_memory_bytes"] = r.footprint.peak_memory_bytes;
   pair["peak_memory_bytes_greatest"] = r.footprint.greatest_peak_memory_bytes;
   pair["bytes_sent"] = r.footprint.bytes_sent;
@@ -105,16 +109,14 @@ std::string table(const TransferReport& r) {
   line("chares", fmt::format("{} per mesh{}", r.chares,
                              r.voxel == 0 ? "" : fmt::format(", voxels of {:.4g}", r.voxel)));
   line("vertices", fmt::format("{} from {} tetrahedra", r.targets, r.source_tets));
-  if (!r.source_skipped.empty()) line("skipped", "in the source: " + r.source_skipped);
-  if (!r.target_skipped.empty()) line("skipped", "in the target: " + r.target_skipped);
-  if (!r.source_split.empty()) line("split", "in the source: " + r.source_split);
-  if (!r.target_split.empty()) line("split", "in the target: " + r.target_split);
-  line("found", fmt::format("{} inside, {} boundary, {} snapped, {} outside", r.counts[0],
-                            r.counts[1], r.counts[2], r.counts[3]));
+  for (const auto& [title, elements] : lines_of(r.source_elements, r.target_elements))
+    line(title, elements);
+  line("found", found_text(r.tally.counts));
+  if (const std::string text = overcovered_text(r.tally); !text.empty()) line("overlaps", text);
   for (const std::string& place : texts_of(r.worst)) line("farthest", place);
   line("candidates",
-       fmt::format("{} ({:.2f} per vertex)", r.n_candidates,
-                   static_cast<double>(r.n_candidates) / static_cast<double>(r.targets)));
+       fmt::format("{} ({:.2f} per vertex)", r.tally.n_candidates,
+                   static_cast<double>(r.tally.n_candidates) / static_cast<double>(r.targets)));
   const auto errors = [&](const std::string& title, auto&& norms_of_field) {
     out += fmt::format("  {:<26} {:>11} {:>11} {:>11} {:>11}\n", title, "L2", "relative", "RMS",
                        "Linf");
@@ -145,7 +147,7 @@ std::string table(const TransferReport& r) {
          fmt::format(
              "{} times; the fastest search again took {:.4f} s; the last one kept the covers "
              "of {} of {} source chares",
-             r.searches - 1, r.seconds.again, r.n_kept_sources, r.chares));
+             r.searches - 1, r.seconds.again, r.tally.n_kept_sources, r.chares));
   line("memory",
        fmt::format("{:.1f} MB peak over {} {}, {:.1f} MB the greatest; {:.3f} MB sent between them",
                    megabytes(r.footprint.peak_memory_bytes), r.processes,

@@ -105,10 +105,8 @@ Task measure(Problem& problem, GroupProxy<Gauge> gauge, apps::Progress& progress
   for (std::size_t p = 0; p < problem.reports.size(); ++p) {
     TransferReport& report = problem.reports[p];
     report.seconds.setup = setup;
-    report.counts = graph->found()[p].tally.counts;
+    report.tally = graph->found()[p].tally;
     report.worst = graph->found()[p].worst;
-    report.n_candidates = graph->found()[p].tally.n_candidates;
-    report.n_kept_sources = graph->found()[p].tally.n_kept_sources;
     report.searches = graph->searches();
     report.footprint.peak_memory_bytes = peak.peak_memory_bytes;
     report.footprint.greatest_peak_memory_bytes = peak.greatest_peak_memory_bytes;

@@ -22,7 +22,7 @@ bool is_smooth(const std::string& field) {
 std::vector<const TransferReport*> finest_two(const Study& study, const TransferReport& like) {
   std::vector<const TransferReport*> out;
   for (const TransferReport& r : study.reports)
-    if (r.kind == like.kind && r.policy == like.policy && r.counts[3] == 0) out.push_back(&r);
+    if (r.kind == like.kind && r.policy == like.policy && r.tally.counts[3] == 0) out.push_back(&r);
   std::ranges::sort(out, {}, [](const TransferReport* r) { return r->source_edge; });
   if (out.size() > 2) out.resize(2);
   return out;

@@ -109,7 +109,7 @@ std::string table(const Study& study) {
       if (first)
         fmt::format_to(to, "  {:<{}} {:<{}} {:>9.4g} {:>9.4f} {:>9.4f} {:>8}", r.source, wide,
                        r.target, wide, r.source_edge, r.seconds.setup, r.seconds.transfer(),
-                       r.counts[3]);
+                       r.tally.counts[3]);
       else
         fmt::format_to(to, "{:{}}", "", 2 * wide + 42);
       fmt::format_to(to, "  {:<10} {:>11.4e} {:>11.4e} {:>11.4e} {:>11.4e}{}\n", field.name,
@@ -170,12 +170,12 @@ std::string csv(const Study& study) {
           "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}"
           ",{},{},{:016x}\n",
           plot::csv_field(r.source), plot::csv_field(r.target), r.kind, plot::csv_field(r.policy),
-          plot::csv_field(field.name), r.source_edge, r.source_tets, r.targets, r.counts[0],
-          r.counts[1], r.counts[2], r.counts[3], field.norms.l2, field.norms.l2_relative,
-          field.norms.rms, field.norms.linf, field.found.l2, field.found.l2_relative,
-          field.found.rms, field.found.linf, r.n_candidates, r.seconds.setup, r.seconds.broad,
-          r.seconds.narrow, r.seconds.apply, r.seconds.transfer(), r.footprint.bytes_sent, r.pes,
-          r.processes, r.result_hash);
+          plot::csv_field(field.name), r.source_edge, r.source_tets, r.targets, r.tally.counts[0],
+          r.tally.counts[1], r.tally.counts[2], r.tally.counts[3], field.norms.l2,
+          field.norms.l2_relative, field.norms.rms, field.norms.linf, field.found.l2,
+          field.found.l2_relative, field.found.rms, field.found.linf, r.tally.n_candidates,
+          r.seconds.setup, r.seconds.broad, r.seconds.narrow, r.seconds.apply, r.seconds.transfer(),
+          r.footprint.bytes_sent, r.pes, r.processes, r.result_hash);
   return out;
 }
 

@@ -4,9 +4,9 @@
 #include "runtime/base/words.hpp"
 #include "runtime/core/error.hpp"
 #include "runtime/core/hash.hpp"
+#include "runtime/core/number.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <numeric>
 #include <ranges>
 #include <string_view>
@@ -37,17 +37,15 @@ bool next_line(std::istream& file, std::string& line, std::size_t& number) {
 
 /// Reads "17", "17/3", "17//4" or "-1/…"; negative counts from the last vertex.
 std::uint32_t face_vertex(std::string_view word, std::size_t n_vertices, const auto& place) {
-  long long written = 0;
-  const char* const end = word.data() + word.size();
-  const auto [stop, error] = std::from_chars(word.data(), end, written);
-  const std::string_view rest(stop, end);
-  if (error != std::errc{} || !(rest.empty() || rest.starts_with('/')) ||
+  std::string_view rest = word;
+  const auto written = take_number<long long>(rest);
+  if (!written || !(rest.empty() || rest.starts_with('/')) ||
       rest.find_first_not_of("/-0123456789") != std::string::npos)
     fail(ErrorCode::bad_file, place(), ": expected a vertex number in a face, found '", word, "'");
   const auto count = static_cast<long long>(n_vertices);
-  const long long index = written < 0 ? count + written : written - 1;
+  const long long index = *written < 0 ? count + *written : *written - 1;
   if (index < 0 || index >= count)
-    fail(ErrorCode::bad_file, place(), ": face names vertex ", written, ", but ", n_vertices,
+    fail(ErrorCode::bad_file, place(), ": face names vertex ", *written, ", but ", n_vertices,
          " stand before it");
   return static_cast<std::uint32_t>(index);
 }

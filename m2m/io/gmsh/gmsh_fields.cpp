@@ -4,6 +4,7 @@
 #include "runtime/core/error.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <string>
 #include <utility>
@@ -50,7 +51,7 @@ class GmshFields : public FieldReader {
     std::vector<bool> has(list.size());
     const int step_tag = std::next(time_of_.begin(), static_cast<std::ptrdiff_t>(step))->first;
     for (const Section& section : sections_[field])
-      if (section.step == step_tag) read(file, section, wanted.n_components, places, values, has);
+      if (section.step == step_tag) read(file, section, wanted, places, values, has);
     const auto missing = std::find(has.begin(), has.end(), false);
     if (!has.empty() && std::find(has.begin(), has.end(), true) == has.end())
       fail(ErrorCode::bad_value, path_, ": variable '", wanted.name, "' has no values at step ",
@@ -137,20 +138,32 @@ class GmshFields : public FieldReader {
     return place == FieldPlace::vertices ? "$EndNodeData" : "$EndElementData";
   }
 
-  void read(GmshScanner& file, const Section& section, std::size_t n_components,
+  /// Partitioned files may hold a row several times, with the same values.
+  void read(GmshScanner& file, const Section& section, const FileField& field,
             const GmshTagMap& places, std::vector<double>& values, std::vector<bool>& has) const {
+    const bool nodal = field.place == FieldPlace::vertices;
     file.move_to(section.begin);
     file.set_binary(binary_);
     for (std::size_t i = 0; i < section.n; ++i) {
       const int tag = file.number<int>();
       const VertexId place = tag < 0 ? -1 : places.find(static_cast<std::uint64_t>(tag));
-      if (place < 0) {  // an element without a volume
-        file.skip<double>(n_components);
+      if (place < 0) {
+        if (nodal)
+          fail(ErrorCode::bad_value, path_, ": variable '", field.name, "' has a value for node ",
+               tag, ", which the file does not have");
+        file.skip<double>(field.n_components);  // an element without a volume
         continue;
       }
       const auto row = static_cast<std::size_t>(place);
-      for (std::size_t c = 0; c < n_components; ++c)
-        values[row * n_components + c] = file.number<double>();
+      for (std::size_t c = 0; c < field.n_components; ++c) {
+        double& value = values[row * field.n_components + c];
+        const double read = file.number<double>();
+        if (has[row] && read != value && !(std::isnan(read) && std::isnan(value)))
+          fail(ErrorCode::bad_value, path_, ": variable '", field.name, "' has two values for ",
+               nodal ? "node " : "element ", tag, " at one step, ", value, " and ", read,
+               "; write each once, and give views different names");
+        value = read;
+      }
       has[row] = true;
     }
   }

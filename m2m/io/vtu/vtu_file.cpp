@@ -158,9 +158,16 @@ bool VtuFile::read_appended(const XmlTag& tag, std::string_view bytes) {
 }
 
 const VtuArray& VtuFile::array(const std::vector<VtuArray>& arrays, std::string_view name) const {
-  for (const VtuArray& found : arrays)
-    if (found.name == name) return found;
-  damaged("array ", name, " is missing");
+  const VtuArray* found = nullptr;
+  for (const VtuArray& array : arrays) {
+    if (array.name != name) continue;
+    if (found != nullptr)
+      fail(ErrorCode::bad_value, path_, ": there are two arrays ", name,
+           " in one section; give each a name of its own");
+    found = &array;
+  }
+  if (found == nullptr) damaged("array ", name, " is missing");
+  return *found;
 }
 
 template <class T>

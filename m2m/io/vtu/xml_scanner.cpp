@@ -1,7 +1,8 @@
 #include "m2m/io/vtu/xml_scanner.hpp"
 
+#include "runtime/core/number.hpp"
+
 #include <array>
-#include <charconv>
 #include <cstdint>
 #include <utility>
 
@@ -26,15 +27,12 @@ void append(std::uint32_t character, std::string& out) {
 /// the text does not begin with one.
 std::size_t read_number(std::string_view text, std::string& out) {
   if (!text.starts_with("&#")) return 0;
-  const std::size_t begin = text.substr(2).starts_with("x") ? 3 : 2;
-  std::uint32_t character = 0;
-  const char* const end = text.data() + text.size();
-  const auto [stop, error] =
-      std::from_chars(text.data() + begin, end, character, begin == 3 ? 16 : 10);
-  if (error != std::errc() || stop == end || *stop != ';' || character == 0 || character > 0x10FFFF)
-    return 0;
-  append(character, out);
-  return static_cast<std::size_t>(stop - text.data()) + 1;
+  const bool is_hex = text.substr(2).starts_with("x");
+  std::string_view rest = text.substr(is_hex ? 3 : 2);
+  const auto character = take_number<std::uint32_t>(rest, is_hex ? 16 : 10);
+  if (!character || !rest.starts_with(';') || *character == 0 || *character > 0x10FFFF) return 0;
+  append(*character, out);
+  return text.size() - rest.size() + 1;
 }
 
 std::string without_entities(std::string_view text) {

@@ -226,7 +226,7 @@ TEST_CASE("fields in elements are moved to elements at all steps, and written as
     const FileFieldsReport report = moved(request);
     CHECK(report.fields ==
           std::vector<std::string>{"temp", "q (in elements)", "flux (3 components) (in elements)"});
-    CHECK(report.cell_counts[0] + report.cell_counts[1] == 6 * 5 * 5 * 5);
+    CHECK(report.cell_tally.counts[0] + report.cell_tally.counts[1] == 6 * 5 * 5 * 5);
     REQUIRE(report.steps.size() == n);
     CHECK(hashes(moved(request, 1)) == hashes(report));
 

@@ -148,6 +148,20 @@ TEST_CASE("elements with repeated vertices give the tetrahedra of what they are"
   CHECK(tets.empty());
 }
 
+TEST_CASE("a hexahedron whose vertices stand in the order of a voxel is folded",
+          "[m2m][elements]") {
+  TetMesh mesh;
+  for (int i = 0; i < 8; ++i)
+    mesh.points.push_back({double((i ^ (i >> 1)) & 1), double((i >> 1) & 1), double(i >> 2)});
+  ElementSplitter splitter(mesh);
+  splitter.add(ElementType::hex8, std::array{0, 1, 2, 3, 4, 5, 6, 7});
+  splitter.add(ElementType::hex8, std::array{0, 1, 3, 2, 4, 5, 7, 6});
+  splitter.finish();
+  CHECK(split_text(mesh) ==
+        "2 HEX8 into 12 tetrahedra (1 folded, so that their tetrahedra overlap: check the order of "
+        "their vertices)");
+}
+
 TEST_CASE("tetrahedra know their element, and sides their tetrahedra, in a mix of types",
           "[m2m][elements]") {
   TetMesh mesh;

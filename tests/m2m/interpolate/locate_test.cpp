@@ -45,6 +45,18 @@ TEST_CASE("points inside, on the boundary, snapped and outside are distinguished
   CHECK(locate({0, 0.25, 0.25}, unit)->place == Place::elsewhere);
 }
 
+TEST_CASE("a corner of weight 0 gives nothing of its value, be it NaN or infinite",
+          "[m2m][locate]") {
+  const auto found = locate({0.25, 0.25, 0}, unit);  // on the face without the last corner
+  REQUIRE(found);
+  REQUIRE(found->weights[3] == 0);
+  for (const double bad : {std::nan(""), HUGE_VAL}) {
+    const std::array<double, 4> values{1, 2, 3, bad};
+    CHECK(interpolated(found->weights, {0, 1, 2, 3}, values.data(), 1) == 1.75);
+    CHECK(!std::isfinite(interpolated({0.5, 0.25, 0, 0.25}, {0, 1, 2, 3}, values.data(), 1)));
+  }
+}
+
 TEST_CASE("a tetrahedron without volume holds only its corners", "[m2m][locate]") {
   const std::array<Point, 4> flat{Point{0, 0, 0}, Point{1, 0, 0}, Point{0, 1, 0}, Point{1, 1, 0}};
   CHECK(locate({1, 1, 0}, flat).has_value());

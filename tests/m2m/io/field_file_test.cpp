@@ -429,6 +429,43 @@ TEST_CASE("gmsh's partitions of a step are joined; a vertex without a value is n
   CHECK_THAT(message_of([&] { FieldFile{other}; }), Catch::Contains("'p' has 1 components and 3"));
 }
 
+TEST_CASE("a field with two values for a place, or one for a node that is none, is refused",
+          "[m2m][io]") {
+  const Scratch scratch;
+  const TetMesh mesh = kuhn_mesh({1});
+  const std::string head = as_gmsh(mesh, false, false, 1);
+  auto rows = rows_of(awkward_field("p", mesh.n_points(), 1, 1), 1);
+  for (auto& [tag, values] : rows) values = {2};
+  const auto refusal = [&](const std::string& section) {
+    const std::string path = scratch.write("bad.msh", head + section);
+    return message_of([&] { (void)FieldFile(path).vertex_field(mesh, "p", 0); });
+  };
+  const std::string once = text_of({"NodeData", "p", 0, 0, rows}, false);
+  CHECK(refusal(once).empty());
+  CHECK_THAT(refusal(once + text_of({"NodeData", "p", 0, 0, {{rows[0].first, {500}}}}, false)),
+             Catch::Contains("variable 'p' has two values for node ") &&
+                 Catch::Contains("2 and 500; write each once"));
+  rows.emplace_back(999, std::vector<double>{2});
+  CHECK_THAT(
+      refusal(text_of({"NodeData", "p", 0, 0, rows}, false)),
+      Catch::Contains("variable 'p' has a value for node 999, which the file does not have"));
+  const std::string array =
+      "<DataArray type=\"Float64\" Name=\"f\" format=\"ascii\">1 2 3 4</DataArray>";
+  const std::string path = scratch.write(
+      "twice.vtu",
+      "<VTKFile type=\"UnstructuredGrid\" byte_order=\"LittleEndian\"><UnstructuredGrid><Piece "
+      "NumberOfPoints=\"4\" NumberOfCells=\"1\"><PointData>" +
+          array + array +
+          "</PointData><Points><DataArray type=\"Float64\" NumberOfComponents=\"3\" "
+          "format=\"ascii\">0 0 0 1 0 0 0 1 0 0 0 1</DataArray></Points><Cells><DataArray "
+          "type=\"Int64\" Name=\"connectivity\" format=\"ascii\">0 1 2 3</DataArray><DataArray "
+          "type=\"Int64\" Name=\"offsets\" format=\"ascii\">4</DataArray><DataArray type=\"UInt8\" "
+          "Name=\"types\" "
+          "format=\"ascii\">10</DataArray></Cells></Piece></UnstructuredGrid></VTKFile>\n");
+  CHECK_THAT(message_of([&] { (void)FieldFile(path).vertex_field(read_mesh(path), "f", 0); }),
+             Catch::Contains("there are two arrays f in one section"));
+}
+
 TEST_CASE("a view that gmsh saved is read", "[m2m][io][.][meshes]") {
   const std::string path = made_mesh("view");
   const TetMesh mesh = read_mesh(path);

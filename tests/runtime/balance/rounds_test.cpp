@@ -289,6 +289,9 @@ TEST_CASE("balance options in one line of text", "[balance][rounds]") {
   CHECK(message_of("greedy,period=5").find("5 is not a time") != std::string::npos);
   CHECK(message_of("greedy,period=1e10s").find("1e10s is not a time") != std::string::npos);
   CHECK(message_of("greedy,period=infs").find("infs is not a time") != std::string::npos);
+  CHECK(message_of("greedy,period=5ms").find("is for when=periodic") != std::string::npos);
+  CHECK(message_of("greedy,strategy=refine").find("strategy is given twice") != std::string::npos);
+  CHECK(message_of("").find("is empty") != std::string::npos);
   CHECK(message_of("greedy,report=off").find("unknown key report=off") != std::string::npos);
   CHECK(message_of("greedy,window=0").find("window") != std::string::npos);
   CHECK(message_of("greedy,often").find("unknown key often") != std::string::npos);

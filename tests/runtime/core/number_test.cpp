@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <string_view>
 
 using namespace tess;
 
@@ -17,6 +18,17 @@ TEST_CASE("a whole text is one number or none", "[runtime]") {
     CHECK(!parse_number<std::int32_t>(text));
     CHECK(!parse_number<double>(text));
   }
+}
+
+TEST_CASE("a number is taken off what follows it", "[runtime]") {
+  std::string_view text = "1e3us";
+  CHECK(take_number<double>(text) == 1e3);
+  CHECK(text == "us");
+  CHECK(!take_number<double>(text));
+  CHECK(text == "us");
+  text = "300,4";
+  CHECK(!take_number<std::int8_t>(text));
+  CHECK(text == "300,4");
 }
 
 TEST_CASE("a number beyond the range of its type is none", "[runtime]") {

@@ -7,6 +7,7 @@
 #include "runtime/scheduler/measure/load_record.hpp"
 #include "tests/support/catch.hpp"
 
+#include <array>
 #include <chrono>
 #include <thread>
 
@@ -52,6 +53,27 @@ TEST_CASE("time in which the thread did not run is taken back from the call that
   CHECK(meter.seconds(waits.ticks) < 10e-3);
   CHECK(meter.seconds(works.ticks) > 1e-3);
   CHECK(meter.seconds(meter.busy()) < 30e-3);
+}
+
+TEST_CASE("stolen time is taken back from each call of a long step, and from no other",
+          "[runtime][meter]") {
+  const auto machine = make_threads_machine(1);
+  Meter meter(*machine, PeId{0});
+  std::array<LoadRecord, 6> calls;  // a broadcast to them
+  meter.step_begins();
+  for (std::size_t i = 0; i < calls.size(); ++i) {
+    const Meter::Scope outer = meter.enter({&calls[i], nullptr});
+    work(3e-3);
+    if (i % 2 == 0) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    meter.leave(outer);
+  }
+  meter.step_ends();
+  for (const LoadRecord& call : calls) {
+    CHECK(meter.seconds(call.ticks) > 2e-3);
+    CHECK(meter.seconds(call.ticks) < 12e-3);
+  }
+  CHECK(meter.seconds(meter.busy()) > 12e-3);
+  CHECK(meter.seconds(meter.busy()) < 60e-3);
 }
 
 TEST_CASE("the innermost scope has the time", "[runtime][meter]") {

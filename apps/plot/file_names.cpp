@@ -1,0 +1,20 @@
+#include "apps/plot/file_names.hpp"
+
+#include "apps/plot/write_file.hpp"
+#include "runtime/core/error.hpp"
+
+namespace plot {
+
+void FileNames::reads(std::string what, std::string path) {
+  taken_.emplace_back(std::move(what), std::move(path));
+}
+
+void FileNames::writes(std::string what, std::string path) {
+  for (const auto& [other, other_path] : taken_)
+    if (is_same_file(path, other_path))
+      tess::fail(tess::ErrorCode::bad_argument, what, " would overwrite ", other, " ", other_path,
+                 "; give another file");
+  taken_.emplace_back(std::move(what), std::move(path));
+}
+
+}  // namespace plot

@@ -1,0 +1,22 @@
+// The files of a run: what it writes must not replace what it reads, nor what else it writes.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace plot {
+
+class FileNames {
+ public:
+  /// `what`: the option or argument that names an input, such as "SOURCE". An empty path is none;
+  /// it may be a path that is not there.
+  void reads(std::string what, std::string path);
+  /// Throws tess::Error (bad_argument) that names both options if the path is one of the others.
+  void writes(std::string what, std::string path);
+
+ private:
+  std::vector<std::pair<std::string, std::string>> taken_;  // option, path
+};
+
+}  // namespace plot
