@@ -40,6 +40,8 @@ enum class Receivers {
 struct Report {
   Callback<Hits> call;  ///< called per (voxel, owner, other) with hits
   /// If set, the owner of the object of this model receives a hit, and `receivers` has no effect.
+  /// If both objects are of this model, both owners receive it, or the owner of both once. If
+  /// neither is, it is not sent.
   std::optional<ModelId> only;
   Receivers receivers = Receivers::both_owners;
 

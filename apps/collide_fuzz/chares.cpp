@@ -111,16 +111,17 @@ tess::Task collide_rounds() {
   });
 }
 
-/// Each owner of a pair receives it, once if they are the same; with `only` the owner of the object
-/// of that model.
+/// Each owner of a pair receives it, once if they are the same; with `only` those whose object is of
+/// that model.
 PairList expected(const Objects& scene, const Problem& p) {
   PairList out;
   for (std::uint32_t i = 0; i < scene.boxes.size(); ++i)
     for (std::uint32_t j = i + 1; j < scene.boxes.size(); ++j) {
       const ModelId a{scene.models[i]}, b{scene.models[j]};
       if ((!p.look.within_model && a == b) || !scene.are_pair(i, j)) continue;
-      if (!p.only || a == *p.only) out.push_back({i, j});
-      if (p.only ? b == *p.only : Client::owner(i) != Client::owner(j)) out.push_back({j, i});
+      const bool to_a = !p.only || a == *p.only, to_b = !p.only || b == *p.only;
+      if (to_a) out.push_back({i, j});
+      if (to_b && !(to_a && Client::owner(i) == Client::owner(j))) out.push_back({j, i});
     }
   return out;
 }

@@ -61,7 +61,10 @@ class HitSorter {
   [[nodiscard]] static std::pair<bool, bool> receivers(const ObjectList::Source& a,
                                                        const ObjectList::Source& b,
                                                        const Report& report, PeId found_on) {
-    if (report.only) return {a.model == *report.only, b.model == *report.only};
+    if (report.only) {
+      const bool to_a = a.model == *report.only;
+      return {to_a, b.model == *report.only && !(to_a && a.owner == b.owner)};
+    }
     if (a.owner == b.owner) return {true, false};
     if (report.receivers == Receivers::both_owners) return {true, true};
     const bool to_b = a.pe != found_on && b.pe == found_on;

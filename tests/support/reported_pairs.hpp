@@ -41,8 +41,8 @@ inline Reports in_order(Reports list) {
   return list;
 }
 
-/// Each of the two owners of a pair receives it, once if they are the same; with `only` the owner
-/// of the object of this model.
+/// Each of the two owners of a pair receives it, once if they are the same; with `only` those whose
+/// object is of this model.
 inline Reports all_reports(std::span<const collide::Item> all, collide::PairRules rules,
                            std::optional<collide::ModelId> only) {
   Reports out;
@@ -51,8 +51,9 @@ inline Reports all_reports(std::span<const collide::Item> all, collide::PairRule
       const collide::ObjectId &a = all[i].id, &b = all[j].id;
       if (rules.within_model == collide::WithinModel::skip && a.model == b.model) continue;
       if (!overlap(all[i].box, all[j].box, rules.touching)) continue;
-      if (!only || a.model == *only) out.push_back(reported(a, b));
-      if (only ? b.model == *only : a.owner != b.owner) out.push_back(reported(b, a));
+      const bool to_a = !only || a.model == *only, to_b = !only || b.model == *only;
+      if (to_a) out.push_back(reported(a, b));
+      if (to_b && !(to_a && a.owner == b.owner)) out.push_back(reported(b, a));
     }
   return in_order(std::move(out));
 }

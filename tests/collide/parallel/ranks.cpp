@@ -3,8 +3,9 @@
 // equal, so that a voxel has more pairs than one message. Clients and voxels migrate between
 // rounds, and clients while their pairs are found. In every other round one owner receives a pair,
 // otherwise both. In some rounds boxes have capsules and are searched in pieces, which changes no
-// pair. Then boxes that move little are collided with a slack: of clients that stay, and in two
-// colliders at once, of which one has clients and voxels that migrate between rounds.
+// pair. Then pairs within models count, for the owners of one model. Then boxes that move little
+// are collided with a slack: of clients that stay, and in two colliders at once, of which one has
+// clients and voxels that migrate between rounds.
 #include "collide/collider.hpp"
 #include "runtime/balance.hpp"
 #include "runtime/core/hash.hpp"
@@ -13,6 +14,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <random>
 #include <utility>
 #include <vector>
@@ -61,12 +63,13 @@ ModelId model_of(std::int32_t client) {
 struct Answer {
   std::uint64_t n = 0, hash = 0;
 
-  /// With one owner, it is not known which of the two.
+  /// With one owner, it is not known which of the two; of one owner, which object is `mine`.
   void add(OwnerId owner, OwnerId other, LocalPair pair, Receivers receivers) {
     if (receivers == Receivers::one_owner && other < owner) {
       std::swap(owner, other);
       std::swap(pair.mine, pair.theirs);
     }
+    if (owner == other && pair.theirs < pair.mine) std::swap(pair.mine, pair.theirs);
     ++n;
     hash += mix(
         mix(static_cast<std::uint64_t>(owner) << 32 | static_cast<std::uint64_t>(other)) ^
@@ -80,7 +83,8 @@ Receivers receivers_in(std::int32_t round) {
   return round % 2 == 0 ? Receivers::one_owner : Receivers::both_owners;
 }
 
-Answer oracle(std::int32_t n_clients, std::int32_t round) {
+/// With `only`, pairs within a model count, too.
+Answer oracle(std::int32_t n_clients, std::int32_t round, std::optional<ModelId> only) {
   const Receivers receivers = receivers_in(round);
   std::vector<Item> all;
   for (std::int32_t client = 0; client < n_clients; ++client) {
@@ -90,10 +94,13 @@ Answer oracle(std::int32_t n_clients, std::int32_t round) {
   }
   Answer answer;
   for (const auto& [box, a] : all)
-    for (const auto& [other, b] : all)
-      if (a.model != b.model && overlap(box, other, Touching::counts) &&
-          (receivers == Receivers::both_owners || a.owner < b.owner))
+    for (const auto& [other, b] : all) {
+      const bool receives =
+          only ? a.model == *only && (a.owner != b.owner || a.local < b.local)
+               : a.model != b.model && (receivers == Receivers::both_owners || a.owner < b.owner);
+      if (receives && overlap(box, other, Touching::counts))
         answer.add(a.owner, b.owner, {a.local, b.local}, receivers);
+    }
   return answer;
 }
 
@@ -133,14 +140,15 @@ class Client : public Chare<Client> {
 };
 
 /// The clients submit and receive the hits of a round, which are compared with all pairs.
-Task collide_round(Collider collider, ArrayProxy<Client> clients, std::int32_t round) {
+Task collide_round(Collider collider, ArrayProxy<Client> clients, std::int32_t round,
+                   std::optional<ModelId> only = {}) {
   const std::int32_t n_clients = 2 * n_pes();
-  const Report report{report_to<&Client::receive>(clients), {}, receivers_in(round)};
+  const Report report{report_to<&Client::receive>(clients), only, receivers_in(round)};
   co_await epoch([&] { clients.broadcast<&Client::submit>(collider, round); });
   co_await run_collision(collider, report);
   Future<Answer> done;
   clients.broadcast<&Client::gather>(done.callback());
-  const Answer answer = co_await done, expected = oracle(n_clients, round);
+  const Answer answer = co_await done, expected = oracle(n_clients, round, only);
   TESS_CHECK(answer == expected, "round ", round, ": ", answer.n, " hits were reported, ",
              expected.n, " are right, or others than those");
 }
@@ -152,6 +160,21 @@ Task add_if_kept(Collider collider, std::int32_t& n_kept) {
   const CollisionStatistics statistics = co_await done;
   TESS_CHECK(statistics.n_kept > 0, "no pair of larger boxes was tested");
   n_kept += statistics.searched ? 0 : 1;
+}
+
+/// Pairs within models, too, to the owners of objects of model 0: each of a pair once.
+Task collide_for_one_model() {
+  Collider collider;
+  ArrayProxy<Client> clients;
+  co_await epoch([&] {
+    collider = make_collider({.rules = {.within_model = WithinModel::test}});
+    clients = create<Client>(range(2 * n_pes()));
+  });
+  co_await collide_round(collider, clients, first_slow_round + 1, ModelId{0});
+  co_await epoch([&] {
+    collider.destroy();
+    clients.destroy();
+  });
 }
 
 /// New clients, which do not migrate: what moves to another PE is searched again.
@@ -224,6 +247,7 @@ Task collide_rounds() {
     collider.destroy();
     clients.destroy();
   });
+  co_await collide_for_one_model();
   co_await collide_slowly();
   co_await collide_two_at_once();
 }

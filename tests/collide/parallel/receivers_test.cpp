@@ -4,9 +4,11 @@
 #include "runtime/runtime.hpp"
 #include "tests/support/catch.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace {
@@ -38,13 +40,17 @@ class Row : public Chare<Row> {
   std::int64_t n_ = 0;
 };
 
+Setup setup_of(std::string option) {
+  std::string name = "test";
+  std::array<char*, 3> argv{name.data(), option.data(), nullptr};
+  int argc = 2;
+  return take_options(argc, argv.data());
+}
+
 /// What the two clients receive.
 std::vector<std::int64_t> received(const std::string& option, Receivers receivers,
                                    std::array<std::int32_t, 2> n_each) {
-  std::string name = "test", argument = option;
-  std::array<char*, 3> argv{name.data(), argument.data(), nullptr};
-  int argc = 2;
-  Setup setup = take_options(argc, argv.data());
+  Setup setup = setup_of(option);
   std::vector<std::int64_t> counts;
   const auto program = [&]() -> Task {
     Collider collider;
@@ -65,7 +71,81 @@ std::vector<std::int64_t> received(const std::string& option, Receivers receiver
   return counts;
 }
 
+/// Owns equal boxes, `boxes_of_each[model]` of each model, and keeps its pairs.
+class Mixed : public Chare<Mixed> {
+ public:
+  void submit(const Collider& collider, const std::vector<std::uint32_t>& boxes_of_each) {
+    std::uint32_t first = 0;
+    for (std::uint32_t model = 0; model < boxes_of_each.size(); ++model) {
+      const std::vector<Aabb> boxes(boxes_of_each[model], {{0, 0, 0}, {1, 1, 1}});
+      collider.submit(Objects{owner_of(index()), ModelId{model}, boxes, LocalId{first}});
+      first += boxes_of_each[model];
+    }
+  }
+  void receive(const Hits& hits) {
+    for (const LocalPair& pair : hits.pairs)
+      pairs_.push_back({index().x, index_of(hits.other).x, static_cast<std::int32_t>(pair.mine),
+                        static_cast<std::int32_t>(pair.theirs)});
+  }
+  void gather(Callback<std::vector<std::array<std::int32_t, 4>>> target) {
+    contribute(concatenate, pairs_, std::move(target));
+  }
+
+ private:
+  std::vector<std::array<std::int32_t, 4>> pairs_;  // owner, other, mine, theirs
+};
+
+/// The pairs that `n_owners` receive of the model `only`, sorted. A pair within an owner has no
+/// order unless its objects have two models.
+std::vector<std::array<std::int32_t, 4>> of_model(const std::string& option, ModelId only,
+                                                  std::int32_t n_owners,
+                                                  const std::vector<std::uint32_t>& boxes_of_each,
+                                                  double slack) {
+  Setup setup = setup_of(option);
+  std::vector<std::array<std::int32_t, 4>> pairs;
+  const auto program = [&]() -> Task {
+    Collider collider;
+    ArrayProxy<Mixed> clients;
+    co_await epoch([&] {
+      collider = make_collider({.rules = {.within_model = WithinModel::test}, .slack = slack});
+      clients = create<Mixed>(range(n_owners));
+    });
+    co_await epoch([&] { clients.broadcast<&Mixed::submit>(collider, boxes_of_each); });
+    const Report report{report_to<&Mixed::receive>(clients), only};
+    co_await run_collision(collider, report);
+    Future<std::vector<std::array<std::int32_t, 4>>> all;
+    clients.broadcast<&Mixed::gather>(all.callback());
+    pairs = co_await all;
+  };
+  REQUIRE(run(setup, [&]() -> Task { return program(); }) == 0);
+  for (auto& [owner, other, mine, theirs] : pairs)
+    if (boxes_of_each.size() == 1 && owner == other && theirs < mine) std::swap(mine, theirs);
+  std::sort(pairs.begin(), pairs.end());
+  return pairs;
+}
+
 }  // namespace
+
+TEST_CASE("the owner of a pair's two objects of the model `only` receives it once",
+          "[collide][parallel]") {
+  using Pairs = std::vector<std::array<std::int32_t, 4>>;
+  for (const double slack : {0.0, 0.1})
+    for (const std::string option :
+         {"--pes=1", "--pes=2", "--sim=pes=4,seed=1", "--sim=pes=4,per-process=1,seed=2"}) {
+      CAPTURE(option, slack);
+      CHECK(of_model(option, ModelId{0}, 1, {3}, slack) ==
+            Pairs{{0, 0, 0, 1}, {0, 0, 0, 2}, {0, 0, 1, 2}});
+      // Each of two owners with an object of the model receives the pair.
+      CHECK(of_model(option, ModelId{0}, 2, {1}, slack) == Pairs{{0, 1, 0, 0}, {1, 0, 0, 0}});
+      // Of two models, the object of this one is `mine`, and a pair of others is not sent.
+      CHECK(of_model(option, ModelId{1}, 1, {2, 1}, slack) == Pairs{{0, 0, 2, 0}, {0, 0, 2, 1}});
+      CHECK(of_model(option, ModelId{1}, 1, {2}, slack) == Pairs{});
+      CHECK(
+          of_model(option, ModelId{1}, 2, {1, 1}, slack) ==
+          Pairs{
+              {0, 0, 1, 0}, {0, 1, 1, 0}, {0, 1, 1, 1}, {1, 0, 1, 0}, {1, 0, 1, 1}, {1, 1, 1, 0}});
+    }
+}
 
 TEST_CASE("on request one owner receives a pair: the one of an object of the PE that finds it",
           "[collide][parallel]") {
