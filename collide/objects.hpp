@@ -10,8 +10,8 @@
 
 namespace tess::collide {
 
-/// Objects of one owner and model, numbered from `first` on. submit() copies the boxes and
-/// capsules: they must live until it returns.
+/// Objects of one owner and model, numbered from `first` on, in 32 bits. submit() copies the boxes
+/// and capsules: they must live until it returns.
 struct Objects {
   OwnerId owner{};
   ModelId model{};

@@ -39,8 +39,8 @@ class Manager : public Group<Manager> {
  public:
   explicit Manager(ArrayProxy<Voxel> voxels) : voxels_(voxels) {}
 
-  /// Accept objects of a client on this PE. They throw Error with the object if a box is not valid;
-  /// then no object of the list is accepted.
+  /// Accept objects of a client on this PE. They throw Error with the object if a box is not valid,
+  /// or if numbers do not fit into 32 bits; then no object of the list is accepted.
   void submit(const Objects& objects) { pending().append(objects, pe()); }
   void submit(const std::vector<Item>& items, std::span<const Capsule> capsules) {
     pending().append(items, capsules, pe());

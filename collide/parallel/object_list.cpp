@@ -20,6 +20,15 @@ namespace {
                 objects.model}}}});
 }
 
+void check_numbers(LocalId first, std::size_t n) {
+  constexpr std::uint64_t n_numbers = std::uint64_t{1} << 32;
+  const auto begin = static_cast<std::uint64_t>(first);
+  if (begin + n > n_numbers)
+    fail(ErrorCode::bad_value, "collider: ", n, " objects numbered from ", begin,
+         " on were submitted; their numbers have 32 bits: give a first one of at most ",
+         n_numbers - n);
+}
+
 /// Begins to load boxes, which the processor does not foresee from one block to the next.
 void prefetch(std::span<const Aabb> boxes) {
   const auto bytes = std::as_bytes(boxes);
@@ -84,6 +93,7 @@ void ObjectList::append(const Objects& objects, PeId pe) {
   const std::size_t n = objects.boxes.size(), begin = boxes_.size();
   if (n == 0) return;
   check_room(n, objects.capsules.size());
+  check_numbers(objects.first, n);
   boxes_.reserve(begin + n);
   Aabb bounds = bounds_;
   std::array<std::uint8_t, search::n_octaves<double>> octaves = octaves_;

@@ -1,5 +1,6 @@
 // Which owners receive a pair.
 #include "collide/collider.hpp"
+#include "collide/parallel/object_list.hpp"
 #include "runtime/machine/threads.hpp"
 #include "runtime/runtime.hpp"
 #include "tests/support/catch.hpp"
@@ -171,6 +172,19 @@ TEST_CASE("with two owners on one PE, one of them receives a pair on request",
     const std::vector<std::int64_t> counts = received("--pes=1", receivers, {3, 3});
     CHECK(counts[0] + counts[1] == (receivers == Receivers::one_owner ? 9 : 18) * n_places);
   }
+}
+
+TEST_CASE("objects whose numbers do not fit into 32 bits are refused, and none is accepted",
+          "[collide][parallel]") {
+  const std::vector<Aabb> boxes(2, Aabb{{0, 0, 0}, {1, 1, 1}});
+  ObjectList list;
+  CHECK_THROWS_WITH(list.append(Objects{{}, {}, boxes, LocalId{4294967295}}, PeId{0}),
+                    "collider: 2 objects numbered from 4294967295 on were submitted; their numbers "
+                    "have 32 bits: give a first one of at most 4294967294");
+  CHECK(list.size() == 0);
+  list.append(Objects{{}, {}, boxes, LocalId{4294967294}}, PeId{0});
+  REQUIRE(list.size() == 2);
+  CHECK(list.local(1, 0) == LocalId{4294967295});
 }
 
 TEST_CASE("a report that nothing receives is refused", "[collide][parallel]") {
