@@ -19,7 +19,7 @@ void fast(Rows& rows) {
   const Field sheet = sheet_field(cube_grid(thickness, 17));
   const Field ball = sphere_field(cube_grid(0.5 + thickness, 33), 0.5);
   for (const LookUp look_up : {LookUp::nearest, LookUp::tangent, LookUp::trilinear})
-    for (const double thicknesses : {1e-1, 1e0, 1e1, 1e2, 1e4, 1e6}) {
+    for (const double thicknesses : {1e-1, 1e0, 1e1, 1e2, 1e4, 1e6, 1e18, 1e22, 1e30, 1e45, 1e99}) {
       const double speed = thickness * thicknesses;  // a step
       const Rules rules = impact(1, Sweep::on, look_up);
       const int n_steps = static_cast<int>(std::ceil(4 / speed)) + 1;

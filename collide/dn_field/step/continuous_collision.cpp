@@ -16,6 +16,8 @@ constexpr float into_next = 1e-3F, blend_stride = 0.25F;
 constexpr float level = 1e-6F;      // slopes of a path below this are rounding
 constexpr double most_bent = 0.25;  // cells between a path and the straight one taken for it
 constexpr double never = HUGE_VAL;
+// Squares of longer ways overflow: particles on them fly straight, through surfaces too.
+constexpr double longest_way = 1e150;
 // Of the paths of a step: a particle that sinks no faster rests on the surface, up to rounding.
 constexpr double at_rest = 1e-12;
 
@@ -42,6 +44,11 @@ F way_in_voxel(F3 g, F3 way, F per_cell) {
   return min(min(along(g.x, way.x), along(g.y, way.y)), along(g.z, way.z));
 }
 
+/// The largest power of two that is not above v, for v > 0.
+D power_of_two(D v) {
+  return (D)((L)v & (L{} + 0x7FF0000000000000));
+}
+
 /// A sample of one object's field, in units of the world when the step begins.
 struct Here {
   D distance;  ///< `never` outside the field
@@ -56,7 +63,10 @@ Here sample_here(const PlacedObject& object, LookUp kind, const Pose& pose, D3 x
   const I in = found.in;
   const F free = max(free_in_world(object, found, g), F{});
   const D3 n = to_double(only(in, to_world(object, found.normal)));
-  const F3 w = turned_to_grid(object, to_float(seen.way));
+  // The way is scaled by a power of two, exactly: floats hold neither squares above 1e38 nor the
+  // fractions of such a way that a voxel is.
+  const D per_size = 1.0 / max(power_of_two(norm1(seen.way)), all(0x1p-1000));
+  const F3 w = turned_to_grid(object, to_float(per_size * seen.way));
   const F per_cell = 1.0F / sqrt(dot(w, w));
   const F straight = kind == LookUp::trilinear
                          ? blend_stride * per_cell
@@ -64,11 +74,13 @@ Here sample_here(const PlacedObject& object, LookUp kind, const Pose& pose, D3 x
   Here here{widen(in) ? to_double(distance_in_world(object, found)) : all(never), refined(n), {}};
   if (object.bends()) {
     const Bend bend = bend_of(object, pose, x, way);
-    const D held = min(to_double(straight), bend.time_within(most_bent * object.cell));
+    const D held = min(per_size * to_double(straight), bend.time_within(most_bent * object.cell));
     here.stride = min(max(bend.time_for(to_double(free)), held), bend.valid);
   } else {
-    here.stride = to_double(max(free / object.cell * per_cell, straight));
+    here.stride = per_size * to_double(max(free / object.cell * per_cell, straight));
   }
+  // So far away that floats do not hold the place.
+  here.stride = norm1(to_double(g)) < never ? here.stride : all(never);
   return here;
 }
 
@@ -234,7 +246,7 @@ void trace_vector(const Scene& scene, std::span<const Untraced> from, const Part
   const D3 x0 = lane(&Untraced::position), way0 = lane(&Untraced::way);
   D3 x = x0, start = lane(&Untraced::start_velocity), end = lane(&Untraced::end_velocity),
      way = way0;  // per step
-  const L can_fly = finite(x) & finite(way) & finite(start) & finite(end);
+  const L can_fly = finite(x) & (norm1(way) < longest_way) & finite(start) & finite(end);
   const bool drags = c.surface_threshold > c.threshold;
   const LinearFlow& flow = drags ? c.surface : c.air;
   D rest = all(1.0);

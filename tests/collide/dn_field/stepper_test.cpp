@@ -264,6 +264,32 @@ TEST_CASE("bounces off a built box are those of the exact box", "[dn_field][rule
   }
 }
 
+TEST_CASE("a particle of any speed bounces off an object, at rest or in motion",
+          "[dn_field][rules]") {
+  const Field ball = sphere_field(cube_grid(1.5, 24), 0.6);
+  std::array<Object, 5> objects;
+  objects.fill({&ball, {}});
+  objects[1].frame.axes = rotation({0.3, -1, 0.4});
+  objects[2].frame.velocity = {0.5, 0.25, -1};
+  objects[3].frame.angular_velocity = {0.3, -1, 0.4};
+  objects[4].frame.scale_rate = -0.1;
+  Rules rules;
+  rules.impact = Impact{1, 0, Sweep::on};
+  for (const LookUp look_up : {LookUp::nearest, LookUp::tangent, LookUp::trilinear})
+    for (const Object& object : objects)
+      for (const double speed : {1e6, 1e17, 1e18, 1e19, 1e25, 1e37, 1e39, 1e45, 1e100}) {
+        rules.look_up = look_up;
+        INFO(name_of(look_up) << ", object " << &object - objects.data() << ", speed " << speed);
+        Particles one;
+        one.push_back({0.1, 0.2, 3}, {0, 0, -speed});
+        // The second step begins further away than the first went.
+        make_stepper(rules, 1).run(one.span(), {&object, 1}, 0, 2);
+        CHECK(norm(one.velocity(0)) == Approx(speed).epsilon(2 / speed + 1e-9));
+        CHECK(one.vz[0] > 0.5 * speed);
+        CHECK(norm(one.position(0)) == Approx(2 * speed).epsilon(5 / speed + 1e-9));
+      }
+}
+
 TEST_CASE("objects that cannot serve are refused with a reason", "[dn_field][rules]") {
   const Field ball = sphere_field(cube_grid(1, 16), 0.5);
   Rules rules;
