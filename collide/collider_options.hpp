@@ -32,7 +32,8 @@ struct CollisionStatistics {
   std::uint64_t n_voxels = 0;    ///< that were searched
   std::uint64_t n_entries = 0;   ///< (object, voxel) pairs that were sent
   std::uint64_t n_left_out = 0;  ///< and that were not
-  std::uint64_t n_pieces = 0;    ///< of long thin objects; 0: objects are boxes, without capsules
+  /// Of long thin objects; one per object if they are whole; 0: objects are boxes, without capsules.
+  std::uint64_t n_pieces = 0;
   std::uint64_t n_kept = 0;  ///< pairs of larger boxes that were tested (ColliderOptions::slack)
   bool searched = true;      ///< if not, these pairs are of a collision before, and all else is 0
 

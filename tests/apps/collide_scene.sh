@@ -113,6 +113,13 @@ explains 'voxel size *2.5 ' wave:64 --voxel-size 2.5
 "$scene" "$scratch/floor.obj" "$scratch/wall.ply" --pes 2 --voxel-size 0.01 >"$scratch/out.txt" 2>&1 && grep -q 'error *25' "$scratch/out.txt"
 check "the error is measured, whatever the voxels of the run" $?
 
+"$scene" long_needles:2000 --triangles --pes 2 --json "$scratch/now.json" >"$scratch/out.txt" 2>&1
+[[ $(value_of pieces) -gt $(value_of objects) ]] && grep -q "$(value_of pieces) pieces of long thin triangles" "$scratch/out.txt"
+check "long thin triangles are searched in pieces" $?
+"$scene" needles:2000 --triangles --pes 2 --voxel-size 0.1 --json "$scratch/now.json" >"$scratch/out.txt" 2>&1
+[[ $(value_of pieces) == $(value_of objects) ]] && grep -q 'long thin triangles, whole' "$scratch/out.txt"
+check "with a voxel size they are whole: as many pieces as objects" $?
+
 # refuses WORD COMMAND…: exit code 2, one line with WORD on standard error, nothing on standard output, no file.
 refuses() {
   local word=$1

@@ -100,7 +100,9 @@ std::string table(const Report& report) {
                    or_unknown(grid.voxel_size), or_unknown(grid.levels), or_unknown(grid.voxels),
                    or_unknown(grid.entries), or_unknown(grid.left_out)));
   if (grid.pieces.value_or(0) != 0)
-    line("", fmt::format("{} pieces of long thin triangles", *grid.pieces));
+    line("", *grid.pieces == report.n_objects
+                 ? "long thin triangles, whole, by their capsules"
+                 : fmt::format("{} pieces of long thin triangles", *grid.pieces));
   if (report.options.rules.slack > 0) line("slack", slack_in_words(result));
   out += fmt::format("  {:>6} {:>12} {:>12} {:>12} {:>12}\n", "step", "candidates", "pairs", "ms",
                      "ns/object");

@@ -45,7 +45,7 @@ struct GridReport {
   std::optional<std::uint64_t> levels, voxels;
   std::optional<std::uint64_t> entries;   ///< (object, voxel)
   std::optional<std::uint64_t> left_out;  ///< objects in voxels of one model
-  std::optional<std::uint64_t> pieces;    ///< of long thin triangles; 0: objects are boxes
+  std::optional<std::uint64_t> pieces;    ///< of triangles with capsules; 0: objects are boxes
   std::optional<std::uint64_t> bytes;     ///< of the grid and its scratch
 };
 
