@@ -1,8 +1,8 @@
 // The rules that act on the particles of a scene; the step loop of make_stepper() holds only those
-// that are set. All are per mass: a stiffness is k/m in 1/s², a rate c/m in 1/s. N is the surface's
-// normal, V the velocity relative to the moving surface, d the distance to it in world units. Only
-// the nearest surface acts. (Paper, sections 3.3 to 3.6. The integrators are ours: exact where the
-// motion has a closed form.)
+// that are set. All are per mass: a stiffness is k/m in 1/s², a rate c/m in 1/s, a strength F/m. N
+// is the surface's normal, V the velocity relative to the moving surface, d the distance to it in
+// world units. Only the nearest surface acts. (Paper, sections 3.3 to 3.6. The integrators are
+// ours: exact where the motion has a closed form.)
 #pragma once
 
 #include "collide/dn_field/look_up.hpp"

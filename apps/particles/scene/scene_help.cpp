@@ -50,15 +50,16 @@ emitters    a list of at least one; of each:
   velocity    [x, y, z] (default 0)
   spread      a random velocity up to this in each component (default 0)
   outward     speed away from the sphere's centre, or along the surface's normal (default 0)
-  mass        above 0 (default 1)
+  mass        above 0 (default 1); see rules
   seed        of the random numbers, 0 … 2^53 (default 1); particle i is the same on any number of PEs
-rules       each may be left out
+rules       each may be left out. Stiffness, damping, rates, alphas and strength are of forces: they are divided by
+            the mass of the emitter's particles. Gravity is an acceleration
   look_up     nearest (not with springs), tangent (default), trilinear
   spring      {"stiffness": k, "reach": d, "damping": 0}          force over depth below d
   impact      {"restitution": 0 … 1, "threshold": 0, "sweep": true}
   surface_drag   {"rate": c, "threshold": d}
   surface_flow   {"alpha_in": a, "alpha_out": a, "distance": d}
-  gravity     [x, y, z]: an acceleration
+  gravity     [x, y, z]
   wind        {"velocity": [x, y, z], "rate": c}
   air_drag    {"rate": c, "law": "linear" or "quadratic"}
   explosions  [{"centre": …, "strength": f, "radius": r, "start": 0, "duration": t}, …]

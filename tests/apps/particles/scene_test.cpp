@@ -386,12 +386,29 @@ TEST_CASE("forces act by mass, gravity does not", "[particles][scene]") {
   rules.gravity = tess::dn::Gravity{{0, 0, -2}};
   rules.spring = tess::dn::Spring{8, 2, 1};
   rules.air_drag = tess::dn::AirDrag{6, tess::dn::DragLaw::linear};
+  rules.wind = tess::dn::Wind{{4, 0, 0}, 12};
+  rules.surface_drag = tess::dn::SurfaceDrag{10, 1};
+  rules.surface_flow = tess::dn::SurfaceFlow{14, 16, 1};
+  rules.explosions = {tess::dn::Explosion{{2, 0, 0}, 18, 4, 1, 1}};
   const tess::dn::Rules heavy = for_mass(rules, 2);
   CHECK(heavy.gravity->acceleration.z == -2);
   CHECK(heavy.spring->stiffness == 4);
   CHECK(heavy.spring->damping == 1);
   CHECK(heavy.spring->reach == 1);
   CHECK(heavy.air_drag->rate == 3);
+  CHECK(heavy.wind->rate == 6);
+  CHECK(heavy.wind->velocity.x == 4);
+  CHECK(heavy.surface_drag->rate == 5);
+  CHECK(heavy.surface_drag->threshold == 1);
+  CHECK(heavy.surface_flow->alpha_in == 7);
+  CHECK(heavy.surface_flow->alpha_out == 8);
+  CHECK(heavy.surface_flow->distance == 1);
+  CHECK(heavy.explosions[0].strength == 9);
+  CHECK(heavy.explosions[0].radius == 4);
+  rules.air_drag->law = tess::dn::DragLaw::quadratic;
+  CHECK(for_mass(rules, 2).air_drag->rate == 3);
+  CHECK(scene_help().find("Stiffness, damping, rates, alphas and strength are of forces: they are "
+                          "divided by") != std::string::npos);
 }
 
 TEST_CASE("emitted particles lie where their emitter says", "[particles][scene]") {
