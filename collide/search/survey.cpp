@@ -17,8 +17,11 @@ template <class Real, std::size_t D>
   std::string box;
   for (std::size_t k = 0; k < D; ++k)
     box += text(k == 0 ? "[" : " x [", boxes[i].lo[k], ", ", boxes[i].hi[k], "]");
+  // No other shape of the library has an empty box.
+  const bool is_empty = boxes[i].lo == no_box<Real, D>().lo && boxes[i].hi == no_box<Real, D>().hi;
   fail(ErrorCode::bad_value, "pairs: box ", box, " of object ", i, set,
-       " is not valid; give finite numbers with lo <= hi");
+       " is not valid; give finite numbers with lo <= hi",
+       is_empty ? " (of a ball: a radius that is not negative)" : "");
 }
 
 /// The bytes of the processor's vectors. Wider ones are taken apart, element by element.

@@ -1,6 +1,7 @@
 // Compares the pairs of the serial face with overlap() of all pairs.
 #include "collide/pairs.hpp"
 
+#include "collide/sphere.hpp"
 #include "runtime/core/error.hpp"
 #include "tests/support/catch.hpp"
 
@@ -311,6 +312,13 @@ TEST_CASE("a bad box, voxel size or list of models is an error that names it", "
       REQUIRE_THAT(refused({{bad, 0, 0}, {1, 1, 1}}, at, {}), Catch::Contains(name));
     REQUIRE_THAT(refused({{0, 0, 0}, {1, 1, nan}}, at, {}), Catch::Contains(name));
   }
+  for (const double radius : {-1.0, nan}) {
+    const std::vector<Sphere> balls{{{0, 0, 0}, 1}, {{0, 0, 0}, radius}};
+    REQUIRE_THROWS_WITH(pairs(std::span<const Sphere>(balls)),
+                        Catch::Contains("of object 1 is not valid") &&
+                            Catch::Contains("(of a ball: a radius that is not negative)"));
+  }
+  REQUIRE_THAT(refused({{1, 0, 0}, {0, 1, 1}}, 0, {}), Catch::EndsWith("with lo <= hi"));
   const Aabb good{{0, 0, 0}, {1, 1, 1}};
   REQUIRE_THAT(refused(good, 0, {.voxel_size = 1e-6}), Catch::Contains("voxel size 1e-06 puts"));
   for (const double bad : {-0.5, nan, inf, -inf})
