@@ -18,13 +18,34 @@ namespace {
 using tess::detail::take_word;
 using tess::detail::to_number;
 
+/// Reads a line that ends with \n, \r\n or \r. False at the end of the file.
+bool read_line(std::istream& file, std::string& line) {
+  line.clear();
+  std::streambuf& bytes = *file.rdbuf();
+  constexpr auto end = std::char_traits<char>::eof();
+  for (auto c = bytes.sbumpc(); c != end; c = bytes.sbumpc()) {
+    if (c == '\r' && bytes.sgetc() == '\n') bytes.sbumpc();
+    if (c == '\n' || c == '\r') return true;
+    line += static_cast<char>(c);
+  }
+  return !line.empty();
+}
+
+/// Whether a file begins with bytes that no text has.
+bool is_binary(std::istream& file) {
+  std::array<char, 1024> bytes{};
+  file.seekg(0);
+  file.read(bytes.data(), bytes.size());
+  return std::ranges::count(bytes.begin(), bytes.begin() + file.gcount(), '\0') > 0;
+}
+
 /// Reads a line with those that continue it after a backslash, and without its comment. Counts the
 /// lines. False at the end of the file.
 bool next_line(std::istream& file, std::string& line, std::size_t& number) {
   line.clear();
   std::string part;
   for (bool more = true; more;) {
-    if (!std::getline(file, part)) return !line.empty();
+    if (!read_line(file, part)) return !line.empty();
     if (++number == 1 && part.starts_with("\xEF\xBB\xBF")) part.erase(0, 3);  // a byte order mark
     part.resize(std::min(part.find('#'), part.size()));
     while (!part.empty() && tess::detail::is_blank(part.back())) part.pop_back();
@@ -185,7 +206,10 @@ Surface read_obj(const std::string& path) {
         surface.triangles.push_back({polygon[0], polygon[i - 1], polygon[i]});
     }
   }
-  if (surface.triangles.empty()) fail(ErrorCode::bad_file, path, ": holds no faces");
+  if (surface.triangles.empty())
+    fail(ErrorCode::bad_file, path, ": holds no faces: ",
+         is_binary(file) ? "it is not text, as an OBJ file is; name it by its format"
+                         : "an OBJ file has lines f 1 2 3");
   return surface;
 }
 

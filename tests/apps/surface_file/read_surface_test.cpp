@@ -112,8 +112,10 @@ TEST_CASE("every format keeps all triangles, also degenerate and duplicate ones,
   CHECK(soup(read_surface(scratch.write("A.STL", text_stl(triangles)))) == triangles);
 }
 
-TEST_CASE("an OBJ file may have tabs, indents, comments, continued lines and a byte order mark",
-          "[apps][surface_file]") {
+TEST_CASE(
+    "an OBJ file may have tabs, indents, comments, continued lines, line ends of any kind and "
+    "a byte order mark",
+    "[apps][surface_file]") {
   const tess::test::Scratch scratch;
   const std::string plain = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\n";
   const auto expected = soup(read_surface(scratch.write("plain.obj", plain)));
@@ -124,7 +126,8 @@ TEST_CASE("an OBJ file may have tabs, indents, comments, continued lines and a b
         "\xEF\xBB\xBFv 0 0 0\nv 1 0 0 # right\nv 0 1 0\nv 0 0 1\nf 1 2 3 # front\n#f 1 2 3\nf 1 2 "
         "4",
         "v 0 0 \\\n0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 \\\r\n 2 \\\n 3\nf 1 2 4\\",
-        "v 0 0 0\r\nv 1 0 0\r\nv 0 1 0\r\nv 0 0 1\r\nf 1/2 2/3/4 3//5\r\nf -4 -3 -1\r\n"}) {
+        "v 0 0 0\r\nv 1 0 0\r\nv 0 1 0\r\nv 0 0 1\r\nf 1/2 2/3/4 3//5\r\nf -4 -3 -1\r\n",
+        "# old\rv 0 0 0\rv 1 0 0\rv 0 1 0\r\rv 0 0 1\rf 1 \\\r 2 3\rf 1 2 4"}) {
     INFO(text);
     CHECK(soup(read_surface(scratch.write("a.obj", text))) == expected);
   }
@@ -206,7 +209,10 @@ TEST_CASE("what is no surface is refused with its name and the reason", "[apps][
       "property float y\nproperty float z\n";
   const std::string faces = "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
   CHECK_THAT(refused("a.obj", ""), Contains("holds no faces"));
-  CHECK_THAT(refused("a.obj", "not a mesh\n"), Contains("holds no faces"));
+  CHECK_THAT(refused("a.obj", "not a mesh\n"), Contains("holds no faces: an OBJ file has lines f"));
+  CHECK_THAT(refused("a.obj", binary_stl(triangles)), Contains("no faces: it is not text"));
+  CHECK_THAT(refused("a.obj", "v 0 0 0\rv 1 0 0\r\nf 1 2 9\r"),
+             Contains(":3: face names vertex 9"));
   CHECK_THAT(refused("a.obj", "v 0 0 0\nv 1 0 0\nv 0 nan 0\nf 1 2 3\n"), Contains("vertex 2"));
   const std::string corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
   for (const char* face : {"1.5 2 3", "1 2 3/a", "1x 2 3", "1 2 three", "1 \v 3"})
