@@ -76,8 +76,9 @@ void require_one_purpose(const apps::CommandLine& line, bool replays) {
         tess::fail(tess::ErrorCode::bad_argument, name,
                    ": is an option of --replay; give the snapshots to replay, or leave it out");
     if (line.is_given("--snapshot-format") && !line.is_given("--save-snapshot"))
-      tess::fail(tess::ErrorCode::bad_argument,
-                 "--snapshot-format: is an option of --save-snapshot; give a folder, or leave it out");
+      tess::fail(
+          tess::ErrorCode::bad_argument,
+          "--snapshot-format: is an option of --save-snapshot; give a folder, or leave it out");
     return;
   }
   for (const char* const name :

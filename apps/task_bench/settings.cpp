@@ -56,6 +56,17 @@ Load balancing:
       fmt::join(type_names(), ", "), fmt::join(kernel_names(), ", "), tess::options_help());
 }
 
+/// True if a graph has this task, and another task reads its output.
+bool is_read(const Graph& graph, std::int64_t step, std::int64_t point) {
+  if (step + 1 >= graph.steps || point >= graph.width) return false;
+  const auto task = static_cast<std::int32_t>(point);
+  const auto readers = dependents(graph, set_at(graph, step + 1), task);
+  return points_at(graph, step).contains(task) &&
+         std::ranges::any_of(readers, [later = points_at(graph, step + 1)](std::int32_t reader) {
+           return later.contains(reader);
+         });
+}
+
 template <class T>
 T number(std::string_view option, std::string_view value, T least, T most) {
   const auto result = tess::parse_number<T>(value);
@@ -197,12 +208,12 @@ class Parser {
       s.graphs.push_back(g);
     }
     if (s.spoiled && std::ranges::none_of(s.graphs, [&](const Graph& g) {
-          const auto [step, point] = *s.spoiled;
-          return step < g.steps && point < g.width &&
-                 points_at(g, step).contains(static_cast<std::int32_t>(point));
+          return is_read(g, s.spoiled->first, s.spoiled->second);
         }))
-      refuse(fmt::format("--spoil {},{}: no graph has this task; give a step and a point of one",
-                         s.spoiled->first, s.spoiled->second));
+      refuse(
+          fmt::format("--spoil {},{}: no graph has a task with this step and point whose output "
+                      "another task reads; give those of one",
+                      s.spoiled->first, s.spoiled->second));
     if (s.balance && s.balance->when == tess::BalanceWhen::periodic) s.sync_every = 0;
     if (!s.balance) s.sync_every = 0;
   }

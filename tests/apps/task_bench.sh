@@ -114,8 +114,9 @@ fails 2 "-fraction" "$bin" -fraction 1.5
 fails 2 "no grain" "$bin" -metg -kernel empty
 fails 2 "gredy" "$bin" --balance gredy
 fails 2 "--spoil" "$bin" --spoil 3
-fails 2 "no graph has this task" "$bin" -steps 4 -width 4 --spoil 4,0
-fails 2 "no graph has this task" "$bin" -steps 4 -width 4 -type tree --spoil 0,1
+fails 2 "no graph has a task" "$bin" -steps 4 -width 4 --spoil 4,0
+fails 2 "no graph has a task" "$bin" -steps 4 -width 4 -type trivial --spoil 2,2
+fails 2 "no graph has a task" "$bin" -steps 4 -width 4 -type tree --spoil 0,1
 fails 2 "missing" "$bin" --json "$scratch/missing/x.json"
 fails 2 "--plot" "$bin" --csv "$scratch/x.csv" --plot "$scratch/x.svg"
 fails 2 ".svg" "$bin" --plot "$scratch/x.png"
