@@ -3,7 +3,6 @@
 
 #include "m2m/status.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cstdint>
 
@@ -27,7 +26,7 @@ struct Tally {
     n_candidates += other.n_candidates;
     n_kept_sources += other.n_kept_sources;
     n_overcovered += other.n_overcovered;
-    most_covered = std::max(most_covered, other.most_covered);
+    if (other.most_covered > most_covered) most_covered = other.most_covered;
     return *this;
   }
 };

@@ -181,10 +181,11 @@ void apply(const WeightMatrix& matrix, std::span<const double> values, std::size
       const auto value = [&](std::size_t k) {
         return values[static_cast<std::size_t>(columns[k]) * n_components + c];
       };
-      const auto part = [&](std::size_t k) {
-        return weights[k] == 0 ? 0.0 : weights[k] * value(k);
+      const auto part = [&](std::size_t k) {  // as weighted() and interpolated() in locate.hpp
+        const double product = weights[k] * value(k);
+        return weights[k] == 0 && product != product ? 0 : product;
       };
-      if (columns.size() == 4) {  // as interpolated() in interpolate/locate.hpp
+      if (columns.size() == 4) {
         to[c] = (part(0) + part(1)) + (part(2) + part(3));
         continue;
       }

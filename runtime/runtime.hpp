@@ -1,4 +1,5 @@
-// Includes everything that a chare program needs.
+// Includes what most chare programs need. With headers of their own: balance.hpp, checkpoint.hpp,
+// index_map.hpp (mapped), interface.hpp, process_group.hpp, scan.hpp, trace.hpp, when.hpp.
 #pragma once
 
 #include "runtime/array.hpp"

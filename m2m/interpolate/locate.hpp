@@ -96,6 +96,12 @@ void locate_pairs(std::span<const Point> points, std::span<const Tet> tets,
   return {at(0), at(1), at(2), at(3)};
 }
 
+/// The product, and 0 for a weight of 0 and a value that is not finite.
+[[nodiscard]] inline double weighted(double weight, double value) {
+  const double product = weight * value;
+  return weight == 0 && product != product ? 0 : product;  // NaN
+}
+
 /// Interpolates one component of a field; the value of a vertex is values[vertex * stride]. A
 /// weight of 1 copies the value bit for bit; a weight of 0 takes nothing, not even of NaN.
 [[nodiscard]] inline double interpolated(const Weights& weights, const Tet& tet,
@@ -106,9 +112,7 @@ void locate_pairs(std::span<const Point> points, std::span<const Tet> tets,
   for (std::size_t corner = 0; corner < 4; ++corner) {
     if (weights[corner] == 1) return value(corner);
   }
-  const auto part = [&](std::size_t corner) {
-    return weights[corner] == 0 ? 0.0 : weights[corner] * value(corner);
-  };
+  const auto part = [&](std::size_t corner) { return weighted(weights[corner], value(corner)); };
   return (part(0) + part(1)) + (part(2) + part(3));
 }
 

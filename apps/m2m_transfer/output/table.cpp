@@ -3,6 +3,7 @@
 #include "apps/m2m_transfer/output/farthest.hpp"
 #include "apps/m2m_transfer/output/found.hpp"
 #include "apps/plot/json_text.hpp"
+#include "m2m/transfer_kind.hpp"
 
 #include <array>
 #include <fmt/core.h>
