@@ -59,7 +59,7 @@ void Meter::sent(const ElementKey& to, std::uint64_t bytes) {
 void Meter::step_begins() {
   const std::uint64_t at = now();
   step_began_ = at;
-  if (!virtual_ && at - last_seen_ > gap_ticks_) begin_quantum(at);
+  if (!virtual_ && at - last_seen_ > gap_ticks_) begin_quantum();
 }
 
 void Meter::step_ends() {
@@ -74,9 +74,10 @@ void Meter::idle() {
   if (!virtual_) last_seen_ = now();
 }
 
-void Meter::begin_quantum(std::uint64_t at) {
-  quantum_began_ = at;
+void Meter::begin_quantum() {
+  // The thread may be preempted when this call returns; that time belongs to no call.
   cpu_at_begin_ = thread_cpu_seconds();
+  quantum_began_ = since_ = step_began_ = now();
   longest_ = {};
   longest_ticks_ = 0;
 }
@@ -85,7 +86,7 @@ void Meter::quantum_passes(std::uint64_t at) {
   busy_ += at - step_began_;
   step_began_ = at;
   end_quantum(at);
-  begin_quantum(at);
+  begin_quantum();
 }
 
 void Meter::end_quantum(std::uint64_t at) {

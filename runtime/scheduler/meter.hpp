@@ -120,7 +120,7 @@ class Meter {
   /// Adds the time since the last change of scope to the running scope; returns the present time.
   std::uint64_t pass();
   void ring(std::uint64_t at);
-  void begin_quantum(std::uint64_t at);
+  void begin_quantum();
   void end_quantum(std::uint64_t at);
   void quantum_passes(std::uint64_t at);
 
