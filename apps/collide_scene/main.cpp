@@ -72,8 +72,8 @@ int run(tess::Setup& setup, int argc, char** argv, bool asked_for_pes) {
                "--repeat: with --slack only the first of equal collisions searches; leave one out");
   plot::FileNames names;
   for (const std::string& input : options.inputs) names.reads("INPUT", input);
-  names.writes("--json " + options.json, options.json);
-  names.writes("--trace " + setup.options.trace, setup.options.trace);
+  names.writes("--json", options.json);
+  names.writes("--trace", setup.options.trace);
   const bool speaks = setup.machine->process().value == 0;
   if (stability && speaks && !collide_scene::print_stability()) return 1;
   if (options.inputs.empty()) {

@@ -114,7 +114,7 @@ plot::FileNames file_names(const DriverOptions& o, const std::string& trace) {
                                      {"--json", o.json},
                                      {"--weights", o.weights},
                                      {"--trace", trace}})
-    names.writes(text(option, " ", path), path);
+    names.writes(option, path);
   return names;
 }
 

@@ -91,9 +91,9 @@ void refuse_to_overwrite(plot::FileNames names, const std::string& out, const Pr
   for (std::size_t m = 0; m < problem.meshes.size() && !out.empty(); ++m) {
     if (!is_written(m, problem.pairs)) continue;
     const std::string path = path_of_result(out, m, problem.meshes.size(), problem.pairs);
-    if (path != out) names.writes("--out " + out, path);
+    if (path != out) names.writes("--out " + out + ":", path);
     for (std::int32_t k = 0; k < problem.chares() && is_pvtu(out); ++k)
-      names.writes("--out " + out,
+      names.writes("--out " + out + ":",
                    std::filesystem::path(path).replace_extension(fmt::format("{}.vtu", k)));
   }
 }

@@ -137,11 +137,11 @@ void refuse_contradictions(const Options& options, const std::string& trace) {
   names.reads("BACKGROUND", options.request.background);
   names.reads("OVERSET", options.request.overset);
   names.reads("--wall", options.request.wall);
-  names.writes("--trace " + trace, trace);
-  names.writes("--json " + options.json, options.json);
+  names.writes("--trace", trace);
+  names.writes("--json", options.json);
   for (const char* file : {"background.exo", "overset.exo", "before.svg", "after.svg"})
     if (!options.plot.empty())
-      names.writes("--plot " + options.plot, std::filesystem::path(options.plot) / file);
+      names.writes("--plot " + options.plot + ":", std::filesystem::path(options.plot) / file);
 }
 
 int run(tess::Setup& setup, int argc, char** argv) {

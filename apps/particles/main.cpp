@@ -117,8 +117,8 @@ int run(tess::Setup& setup, int argc, char** argv) {
   }
   plot::FileNames names;
   names.reads("SCENE", options.scene);
-  names.writes("--json " + options.json, options.json);
-  names.writes("--trace " + setup.options.trace, setup.options.trace);
+  names.writes("--json", options.json);
+  names.writes("--trace", setup.options.trace);
   if (line.is_given("--balance")) options.run.balance = tess::parse_balance(balance);
   if (stability) {
     const auto rows = tess::dn::stability_report();

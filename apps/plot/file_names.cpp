@@ -12,8 +12,8 @@ void FileNames::reads(std::string what, std::string path) {
 void FileNames::writes(std::string what, std::string path) {
   for (const auto& [other, other_path] : taken_)
     if (is_same_file(path, other_path))
-      tess::fail(tess::ErrorCode::bad_argument, what, " would overwrite ", other, " ", other_path,
-                 "; give another file");
+      tess::fail(tess::ErrorCode::bad_argument, what, " ", path, " would overwrite ", other, " ",
+                 other_path, "; give another file");
   taken_.emplace_back(std::move(what), std::move(path));
 }
 

@@ -12,7 +12,8 @@ class FileNames {
   /// `what`: the option or argument that names an input, such as "SOURCE". An empty path is none;
   /// it may be a path that is not there.
   void reads(std::string what, std::string path);
-  /// Throws tess::Error (bad_argument) that names both options if the path is one of the others.
+  /// Throws tess::Error (bad_argument) that names both options and paths if the path is one of the
+  /// others. `what`: "--json", or "--out r.pvtu:" for a file that follows from it.
   void writes(std::string what, std::string path);
 
  private:

@@ -64,10 +64,9 @@ void Meter::step_begins() {
 
 void Meter::step_ends() {
   const std::uint64_t at = now();
-  busy_ += at - step_began_;
-  step_began_ = at;
   last_seen_ = at;
-  if (at - quantum_began_ > quantum_ticks_) quantum_passes(at);
+  if (at - quantum_began_ > quantum_ticks_) return quantum_passes(at);
+  busy_ += at - step_began_;
 }
 
 void Meter::idle() {
@@ -84,7 +83,6 @@ void Meter::begin_quantum() {
 
 void Meter::quantum_passes(std::uint64_t at) {
   busy_ += at - step_began_;
-  step_began_ = at;
   end_quantum(at);
   begin_quantum();
 }
