@@ -11,9 +11,13 @@
 //     periodic    no barrier: a round runs whenever `period` has passed, beside the elements' work;
 //                 at_sync() continues immediately
 //
-// The barrier waits for elements that exist when balancing starts from the first round on, and for
-// later elements from their first at_sync() on. It does not wait for destroyed elements. The
-// balancer ends with its array.
+// The barrier waits for all elements of the array. One that is created later joins the round that
+// is open then. Between two phases that is the round of the next one, if its insertion was awaited
+// (co_await epoch(...)); within a phase that of its creator, if the creator awaits it before its
+// own at_sync(). An element that is not awaited may come to exist after the end of that round, and
+// is in the next one. A new element calls at_sync() in the phase that it was created in, too, but
+// not in its constructor if its insertion is awaited: the epoch would wait with it. The barrier
+// does not wait for destroyed elements. The balancer ends with its array.
 //
 // A load is known once a whole phase of the element has been measured. This holds from the first
 // round on for an array that is called after an awaited epoch in which it was created and balancing
@@ -23,10 +27,8 @@
 // moves nothing.
 //
 // A program whose phases are epochs has a barrier already: between two of them it awaits
-// balancer.round(), and no element calls at_sync(). This is the right way for arrays whose elements
-// come and go: at a barrier an element may be too new for the phase that ends, also if it was
-// inserted in an awaited epoch. It then waits for the next round, and in the end for one that does
-// not come: a deadlock, on some schedules only.
+// balancer.round(), and no element calls at_sync(). This is the simplest way for arrays whose
+// elements come and go.
 #pragma once
 
 #include "runtime/array.hpp"

@@ -61,7 +61,7 @@ class Chare : public detail::TessContributor<IndexType> {
   }
 
   /// Marks the end of this element's part of the phase, at the balancer's barrier
-  /// (start_balancing). Once all members have called it and the round is over, resume_from_sync()
+  /// (start_balancing). Once all elements have called it and the round is over, resume_from_sync()
   /// is called on the PE where the element then is. Other messages may run meanwhile; calling
   /// at_sync() again before resume_from_sync() is an error.
   void at_sync() {

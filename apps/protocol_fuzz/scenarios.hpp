@@ -49,6 +49,7 @@ void balance_rotate(Trial& trial);       // elements/balance.cpp
 void balance_first_round(Trial& trial);  // elements/balance.cpp
 void balance_periodic(Trial& trial);     // elements/balance.cpp
 void balance_epochs(Trial& trial);       // elements/balance_epochs.cpp
+void balance_newcomers(Trial& trial);    // elements/balance_newcomers.cpp
 
 struct Scenario {
   std::string_view name;

@@ -55,7 +55,13 @@ PartialRows OverlapSource::share(const MeshView& mesh, const SharedRows& shared)
   std::sort(given.sent.begin(), given.sent.end(),
             [&](VertexId a, VertexId b) { return id_of(a) < id_of(b); });
   given.sent.erase(std::unique(given.sent.begin(), given.sent.end()), given.sent.end());
-  for (const VertexId u : given.sent) partial.ids.push_back(id_of(u));
+  for (const VertexId u : given.sent) {
+    // The target would add up the weights of both.
+    TESS_CHECK(partial.ids.empty() || partial.ids.back() != id_of(u), "two ",
+               rows_of(setup.source_values), " of a piece have the id ", id_of(u),
+               ": point_ids and tet_ids are unique in the mesh");
+    partial.ids.push_back(id_of(u));
+  }
   for (const VertexId u : unknowns)
     partial.columns.push_back(static_cast<std::uint32_t>(
         std::lower_bound(partial.ids.begin(), partial.ids.end(), id_of(u)) - partial.ids.begin()));

@@ -274,6 +274,10 @@ bool Collection::known(const BalanceRecord& record) {
   return record.sync.known;
 }
 
+void Collection::note_unwatched_end(const Element& element) {
+  if (known(element)) unwatched_ends_.push_back(element.balance_->sync.next);
+}
+
 LoadRecord* ElementScope::load_of(const Element& element) {
   return element.balance_ ? &element.balance_->load : nullptr;
 }

@@ -14,6 +14,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace tess::detail {
@@ -144,6 +145,14 @@ class Collection : public HostedCollection {
   /// Migrations from this PE minus those to it, of elements that no barrier knows. The sum over all
   /// PEs is the number of such elements under way.
   [[nodiscard]] std::int64_t n_away() const { return n_away_; }
+  /// The next rounds of the members of the barrier that were destroyed here before there was an
+  /// observer.
+  [[nodiscard]] std::vector<std::uint32_t> take_unwatched_ends() {
+    return std::exchange(unwatched_ends_, {});
+  }
+  /// The element stays here, as if a coroutine of it waited, until it is released; settle() follows.
+  static void hold(Element& element) { ++element.n_suspended_; }
+  static void release(Element& element) { --element.n_suspended_; }
   /// The element waits until its balancer resumes it.
   void at_sync(Element& element);
   /// The message of resume() has arrived. Returns false if it was sent to an earlier incarnation of
@@ -242,6 +251,8 @@ class Collection : public HostedCollection {
   void unlist(Element& element);
   void count_departure(const Element& element) { n_away_ += known(element) ? 0 : 1; }
   void count_arrival(const Element& element) { n_away_ -= known(element) ? 0 : 1; }
+  /// An element is destroyed that no observer sees.
+  void note_unwatched_end(const Element& element);
   /// Releases the epoch of an element that waits at its balancer's barrier and is being destroyed.
   void end_wait(Element& element);
   /// Runs the calls that constructors have requested.
@@ -278,6 +289,7 @@ class Collection : public HostedCollection {
   std::vector<Element*> elements_;
   std::vector<std::function<void()>> after_construction_;
   std::int64_t n_away_ = 0;
+  std::vector<std::uint32_t> unwatched_ends_;
   ElementWatcher* watcher_ = nullptr;
   ReductionTree* second_tree_ = nullptr;
   std::size_t n_new_ = 0;  // local elements that have not contributed since their construction

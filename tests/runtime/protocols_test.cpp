@@ -77,6 +77,10 @@ TEST_CASE("periodic balance rounds lose no message", "[runtime][protocol][balanc
 TEST_CASE("rounds between epochs leave elements to come and go", "[runtime][protocol][balance]") {
   run_seeds("balance_epochs");
 }
+TEST_CASE("a balance round waits for the elements that were created in awaited epochs",
+          "[runtime][protocol][balance]") {
+  run_seeds("balance_newcomers");
+}
 TEST_CASE("a message to an absent index waits for its element", "[runtime][protocol]") {
   run_seeds("message_first");
 }
@@ -187,7 +191,7 @@ TEST_CASE("the scenarios hold on threads", "[runtime][protocol][threads]") {
         "timers",           "asks",           "payloads",        "floods",
         "groups",           "balance_rounds", "balance_barrier", "balance_rotate",
         "balance_periodic", "balance_epochs", "priorities",      "process_groups",
-        "all_at_once",      "scans",          "ends_at_once"}) {
+        "all_at_once",      "scans",          "ends_at_once",    "balance_newcomers"}) {
     for (const std::int32_t n_pes : {1, 2, 4}) {
       for (std::uint64_t seed = 1; seed <= 3; ++seed) {
         Trial trial(seed, n_pes, Trial::On::threads);

@@ -159,9 +159,27 @@ void Balancer::entered(Element& element) {
   if (!barrier_is_open_) return;
   if (plan_.passes) {
     pass(element);
-  } else if (barrier_.entered(element)) {
-    group()[plan_.coordinator].send<&Balancer::late_arrival>();
+    return;
   }
+  const auto coordinator = group()[plan_.coordinator];
+  switch (barrier_.entered(element)) {
+    case Barrier::Entry::usual:
+      break;
+    case Barrier::Entry::late:
+      coordinator.send<&Balancer::late_arrival>();
+      break;
+    case Barrier::Entry::newcomer:
+      coordinator.send<&Balancer::admit>(pe(), barrier_.hold(element));
+      break;
+  }
+}
+
+void Balancer::admit(PeId asker, std::uint32_t ticket) {
+  group()[asker].send<&Balancer::joins>(ticket, barrier_.admit());
+}
+
+void Balancer::joins(std::uint32_t ticket, std::uint32_t round) {
+  barrier_.joins(ticket, round);
 }
 
 void Balancer::left(Element& element) {
@@ -170,7 +188,7 @@ void Balancer::left(Element& element) {
 }
 
 void Balancer::destroyed(Element& element) {
-  if (barrier_is_open_ && !plan_.passes) barrier_.destroyed(element);
+  if (!plan_.passes) barrier_.destroyed(element);
 }
 
 void Balancer::at_sync(Element& element) {

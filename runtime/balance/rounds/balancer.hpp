@@ -83,6 +83,8 @@ class Balancer final : public Group<Balancer>, private ElementWatcher {
   // Entry methods.
   void attached_everywhere(std::int64_t n_under_way);
   void late_arrival();
+  void admit(PeId asker, std::uint32_t ticket);
+  void joins(std::uint32_t ticket, std::uint32_t round);
   void begin();
   Task reached(std::uint64_t n_elements);
   void due(std::uint64_t round);

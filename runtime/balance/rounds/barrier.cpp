@@ -23,11 +23,12 @@ Barrier::Barrier(Pe& pe, Collection& group, PeId coordinator, Callback<std::uint
 
 void Barrier::attach(Collection& array) {
   array_ = &array;
+  for (const std::uint32_t next : array.take_unwatched_ends()) tree_.remove_member(next);
   for (Element* element : array.elements()) {
     if (element == nullptr) continue;
     SyncState& sync = Collection::make_record(*element).sync;
-    if (!sync.known) join_first(sync);
-    if (sync.member) tree_.enter(sync.next);
+    if (!sync.known) join(sync, 0);
+    tree_.enter(sync.next);
   }
   for (Element* element : array.elements()) {
     if (element == nullptr) continue;
@@ -41,62 +42,75 @@ void Barrier::begin() {
   tree_.advance();
 }
 
-void Barrier::join_first(SyncState& sync) {
-  sync.known = true;
-  sync.member = true;
-  sync.next = 0;
-  tree_.add_member(0);
+void Barrier::detach() {
+  for (const auto& [ticket, element] : newcomers_) Collection::release(*element);
+  newcomers_.clear();
+  array_ = nullptr;
 }
 
-bool Barrier::entered(Element& element) {
-  SyncState& sync = sync_of(element);
-  const bool late = !sync.known && !Collection::never_moved(element);
-  if (late) join_first(sync);
+void Barrier::join(SyncState& sync, std::uint32_t round) {
   sync.known = true;
-  if (sync.member) tree_.enter(sync.next);
+  sync.member = true;
+  sync.next = round;
+  tree_.add_member(round);
+}
+
+Barrier::Entry Barrier::entered(Element& element) {
+  SyncState& sync = sync_of(element);
+  const bool created = !sync.known && Collection::never_moved(element);
+  if (created && n_resumed_ != tree_.joins_at()) return Entry::newcomer;
+  const bool late = !sync.known && !created;
+  if (!sync.known) join(sync, created ? n_resumed_ : 0);
+  tree_.enter(sync.next);
   if (sync.phase == SyncPhase::waits) {
     if (sync.next == 0) {
       at_sync(element);  // it began to wait on a PE where balancing had not started
-    } else if (sync.waits_for < n_resumed_) {
+    } else if (sync.next <= n_resumed_) {
       wake(element);
     }
   }
-  return late;
+  return late ? Entry::late : Entry::usual;
+}
+
+std::uint32_t Barrier::hold(Element& element) {
+  Collection::hold(element);
+  sync_of(element).known = true;
+  newcomers_.emplace(n_tickets_, &element);
+  return n_tickets_++;
+}
+
+void Barrier::joins(std::uint32_t ticket, std::uint32_t round) {
+  const auto at = newcomers_.find(ticket);
+  if (at == newcomers_.end()) return;  // the array has ended here
+  Element& element = *at->second;
+  newcomers_.erase(at);
+  SyncState& sync = sync_of(element);
+  sync.member = true;
+  sync.next = round;
+  tree_.enter(round);
+  if (sync.phase == SyncPhase::waits) contribute(sync);
+  Collection::release(element);
+  array_->settle(element);
 }
 
 void Barrier::left(Element& element) {
-  const SyncState& sync = sync_of(element);
-  if (!sync.member) return;
-  tree_.leave(sync.next);
+  tree_.leave(sync_of(element).next);
   tree_.advance();
 }
 
 void Barrier::destroyed(Element& element) {
   const SyncState& sync = sync_of(element);
-  if (!sync.member) return;
+  if (!sync.known) return;  // balancing has not started here, nor where it came from
   tree_.remove_member(sync.next);
   tree_.advance();
 }
 
 void Barrier::at_sync(Element& element) {
   SyncState& sync = sync_of(element);
-  if (sync.member) {
-    contribute(sync);
-    return;
-  }
-  sync.member = true;
-  sync.next = tree_.joins_at();
-  tree_.enter(sync.next);
-  tree_.add_member(sync.next);
-  if (sync.next > n_resumed_) {
-    sync.waits_for = sync.next - 1;
-  } else {
-    contribute(sync);
-  }
+  if (sync.member) contribute(sync);  // else joins() does
 }
 
 void Barrier::contribute(SyncState& sync) {
-  sync.waits_for = sync.next;
   // The wait itself belongs to the element's epoch. Messages of a round belong to no epoch:
   // otherwise every PE would report each of them to that epoch's coordinator.
   tree_.contribute(sync.next++, EpochId{},
@@ -109,7 +123,7 @@ void Barrier::resume(std::uint32_t round) {
   for (Element* element : array_->elements()) {
     if (element == nullptr) continue;
     const SyncState& sync = sync_of(*element);
-    if (sync.phase == SyncPhase::waits && sync.waits_for <= round) wake(*element);
+    if (sync.member && sync.phase == SyncPhase::waits && sync.next <= n_resumed_) wake(*element);
   }
 }
 

@@ -219,8 +219,11 @@ void ArrayOf<Index>::destroy_here(Indexed& element) {
   table_.at(index).set_unknown();
   end_wait(element);
   end_memberships(element);
-  if (watcher() != nullptr) [[unlikely]]
+  if (watcher() != nullptr) [[unlikely]] {
     watcher()->destroyed(element);
+  } else {
+    note_unwatched_end(element);
+  }
   destroy(element);
   reductions().remove_member(next);
   reductions().advance();

@@ -19,12 +19,11 @@ enum class SyncPhase : std::uint8_t {
 
 struct SyncState {
   SyncPhase phase = SyncPhase::runs;
-  bool known = false;           ///< a barrier has seen the element
-  bool member = false;          ///< the barrier waits for the element
-  std::uint32_t next = 0;       ///< for a member: the next round that it reaches
-  std::uint32_t waits_for = 0;  ///< while waiting: the round that resumes the element
-  EpochId epoch{};              ///< the epoch that the wait belongs to
-  std::uint32_t led_by = 0;     ///< the broadcast that led to its wait
+  bool known = false;        ///< a barrier has seen the element
+  bool member = false;       ///< it is known which round it joins
+  std::uint32_t next = 0;    ///< for a member: the next round that it reaches
+  EpochId epoch{};           ///< the epoch that the wait belongs to
+  std::uint32_t led_by = 0;  ///< the broadcast that led to its wait
 };
 
 /// The loads of an element as a checkpoint has them, in seconds; -1 if unknown.

@@ -71,6 +71,11 @@ void ReductionTree::take(std::uint32_t number, const Cause& cause) {
   }
 }
 
+std::uint32_t ReductionTree::admit() {
+  whole_[next_complete_].sum.change += 1;
+  return next_complete_;
+}
+
 void ReductionTree::remove_member(std::uint32_t next) {
   if (next >= next_report_) {
     changes_[next] -= 1;

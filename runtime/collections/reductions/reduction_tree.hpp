@@ -136,6 +136,9 @@ class ReductionTree {
   [[nodiscard]] std::uint32_t joins_at() const { return next_report_; }
 
   void add_member(std::uint32_t at) { changes_[at] += 1; }
+  /// At the root: an element elsewhere joins at the open number, which is returned, and is entered
+  /// on its PE with it.
+  [[nodiscard]] std::uint32_t admit();
   /// For an element on this PE that was created after this broadcast and is a member from `next`
   /// on: the number at which it joins by present knowledge.
   [[nodiscard]] std::uint32_t postpone(std::uint32_t next, std::uint32_t created_after);

@@ -38,6 +38,7 @@ class Patch : public Chare<Patch>, public Piece<Patch> {
     small.n_own_tets = 1;
     load(small);
   }
+  void number_alike() { part_.point_ids.assign(part_.point_ids.size(), 7); }
   void vanish() { load({}); }
   void forget() { values_.clear(); }
 
@@ -64,6 +65,7 @@ Task misuse(std::string name, TransferKind kind) {
   co_await epoch([&] { source = patches(4, 3), target = patches(3, 2); });
   CouplingOptions options;
   options.kind = kind;
+  if (name == "same_ids") co_await epoch([&] { source[{1}].send<&Patch::number_alike>(); });
   Coupling coupling(source, target, options);
   if (name == "two_first_searches") {
     const Task first = coupling.search();

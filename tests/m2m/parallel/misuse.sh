@@ -28,6 +28,7 @@ ends copy_destroyed "a coupling is applied that another copy of the handle has d
 ends copy_searched "a coupling is searched that another copy of the handle has destroyed: use the copy that called destroy()"
 ends shrunk "a piece has 4 rows of values, and had [0-9]* in the last search of the coupling: search again when points or tetrahedra change"
 ends vanished "a piece has 0 rows of values, and had [0-9]* in the last search"
+exits 1 "two points of a piece have the id 7: point_ids and tet_ids are unique in the mesh" "$program" same_ids conservative --pes 2
 ends forgotten "give as many rows, ghosts included\|give equally many"
 ends source_moved "this piece is no source of the coupling: await search() first, use it before its destroy(), and serialise .couplings. if pieces migrate"
 ends target_moved "this piece is no target of the coupling: await search() first, use it before its destroy(), and serialise .couplings. if pieces migrate"
