@@ -27,7 +27,7 @@ struct Nothing {
   std::uint8_t none = 0;
 };
 
-void main_arrives(Pe& pe, Nothing&& /*nothing*/) {
+void main_program(Pe& pe, Nothing&& /*nothing*/) {
   pe.runtime().run_main(pe);
 }
 void exit_asked_arrives(Pe& pe, ExitAsked&& asked) {
@@ -139,7 +139,7 @@ void Runtime::start(PeId id) {
   if (id.value != 0) return;
   Pe& pe0 = pe(id);
   const RunsOn here(pe0);
-  send_system<&main_arrives>(pe0, id, Nothing{});
+  send_system<&main_program>(pe0, id, Nothing{});
   if (options_.hang_report.count() != 0 && machine_.virtual_time()) start_virtual_watch(pe0);
 }
 

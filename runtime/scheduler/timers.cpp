@@ -32,7 +32,7 @@ struct Cancel {
 void alarm_rings(Pe& pe, Alarm&& alarm) {
   pe.timers().on_alarm(Time(alarm.at_ns));
 }
-void timer_is_due(Pe& pe, Due&& due) {
+void timer_call(Pe& pe, Due&& due) {
   pe.timers().on_due(due.timer);
 }
 void timer_ticks(Pe& pe, Tick&& tick) {
@@ -130,7 +130,7 @@ std::uint64_t Timers::after(Time delay, Call call) {
       ++n_made_, Tables::Once{context.epoch, context.led_by, context.led_in, due, std::move(call)});
   pe_.completion().sent(context.epoch);
   pe_.completion().hop_sent();
-  wait(n_made_, due, pe_.stamp(make_message<&timer_is_due>(pe_, Due{n_made_})));
+  wait(n_made_, due, pe_.stamp(make_message<&timer_call>(pe_, Due{n_made_})));
   return n_made_;
 }
 

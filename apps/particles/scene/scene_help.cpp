@@ -45,7 +45,7 @@ emitters    a list of at least one; of each:
   one of      "box": {"low": …, "high": …}                uniform
               "sphere": {"centre": …, "radius": r, "inner": 0}   uniform between two radii
               "lattice": {"low": …, "high": …, "n": [nx, ny, nz]}   both corners included
-              "surface": {"object": 0, "low": 0, "high": d}   at distances low … high from an object
+              "surface": {"object": 0, "low": 0, "high": d}   at distances low … high (at least 0)
   count       how many particles, 1 … 1e9 (not with a lattice)
   velocity    [x, y, z] (default 0)
   spread      a random velocity up to this in each component (default 0)

@@ -3,6 +3,7 @@
 #include "apps/particles/stability/parts.hpp"
 #include "collide/dn_field/build_field.hpp"
 #include "collide/dn_field/compressed.hpp"
+#include "collide/dn_field/look_up.hpp"
 #include "collide/dn_field/shapes.hpp"
 
 #include <algorithm>
@@ -88,6 +89,28 @@ void compressed_fields(Rows& rows) {
   }
 }
 
+/// The number of points on a way through a thin plate at which its compressed field has no normal
+/// and the flat one has: wherever the plate lies between the cells, none.
+void compressed_plates(Rows& rows) {
+  const Surface plate = make_plate(1, 1);
+  constexpr std::size_t n_points = 1000;
+  std::vector<float> x(n_points, 0.03F), y(n_points, 0.07F), z(n_points);
+  for (std::size_t p = 0; p < n_points; ++p)
+    z[p] = 0.25F * (2 * static_cast<float>(p) / n_points - 1);
+  const auto without_normal = [&](const Field& field) {
+    std::vector<float> nx(n_points), ny(n_points), nz(n_points);
+    look_up(field, LookUp::nearest, {x, y, z}, {{}, nx, ny, nz});
+    return std::count(nz.begin(), nz.end(), 0.0F);
+  };
+  for (const int n : {21, 22, 24, 26, 30, 38}) {
+    const Grid grid = grid_around(bounds(plate), n, 0.3);
+    const Field flat = build_field(plate, grid, {.sides = Sides::two, .thickness = 0.3});
+    const Field compressed = compress(flat, {0.2 * grid.cell, 0.14});
+    rows.add("compressed plate: lost normals", "voxels", n,
+             static_cast<double>(without_normal(compressed) - without_normal(flat)), 0);
+  }
+}
+
 /// Normals of blurred fields differ from the surface's; the reflected direction by twice as much.
 void blurred_fields(Rows& rows) {
   const Surface surface = make_sphere(0.5, 40);
@@ -142,6 +165,7 @@ void extreme_places(Rows& rows) {
   starts(rows);
   scales(rows);
   compressed_fields(rows);
+  compressed_plates(rows);
   blurred_fields(rows);
   not_finite(rows);
 }

@@ -13,8 +13,11 @@ constexpr int min_shift = 2, max_shift = 4;
 constexpr int min_normal_bits = 4, max_normal_bits = 11;
 constexpr double entry_share = 0.4;  // of the angle's bound that writing an entry may take
 
-double angle_between(Vec3 a, Vec3 b) {
-  return std::atan2(norm(cross(a, b)), dot(a, b));
+/// Between the normals of an entry and of a voxel, which has one. An entry without a normal fits
+/// none: it is made where normals cancel out, as on both sides of a thin plate.
+double angle_between(Vec3 entry, Vec3 voxel) {
+  if (entry == Vec3{}) return HUGE_VAL;
+  return std::atan2(norm(cross(entry, voxel)), dot(entry, voxel));
 }
 
 struct Plane {
@@ -159,7 +162,7 @@ bool Compressor::fits(std::array<int, 3> low, int s, std::uint32_t& entry) {
   for (const Voxel& v : voxels_) {
     const auto d = static_cast<double>(distance_to(made, v.x, v.y, v.z, thickness_));
     off_.distance = std::max(off_.distance, std::abs(d - v.distance));
-    if (norm(v.normal) > 0) off_.angle = std::max(off_.angle, angle_between(made_normal, v.normal));
+    if (v.normal != Vec3{}) off_.angle = std::max(off_.angle, angle_between(made_normal, v.normal));
     if (!(off_.distance <= bound_.distance) || !(off_.angle <= bound_.angle)) return false;
   }
   return true;
