@@ -178,7 +178,13 @@ template <class Part, class... Args>
 void create_shared_arrives(Pe& pe, CreateShared<Part, Args...>&& m) {
   using Shared = typename Part::Shared;
   const SameProcess<Shared> shared{std::apply(
-      [](auto&... arg) { return std::make_shared<Shared>(std::in_place, std::move(arg)...); },
+      [&pe](auto&... arg) {
+        try {
+          return std::make_shared<Shared>(std::in_place, std::move(arg)...);
+        } catch (...) {
+          pe.rethrow_kept();
+        }
+      },
       m.args)};
   using Create = CreateArray<Part, SameProcess<Shared>>;
   const Create create{m.id, range(pe.n_pes()), m.epoch, {shared}};

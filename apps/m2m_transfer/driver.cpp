@@ -241,8 +241,12 @@ int run_stability(Setup& setup, const DriverOptions& options, apps::Progress& pr
 }
 
 Mode mode_of(const DriverOptions& options) {
-  if (!options.round_trips.empty()) return Mode::round_trips;
-  if (moves_file_fields(options)) return Mode::files;
+  const bool trips = !options.round_trips.empty();
+  if (moves_file_fields(options)) {
+    if (trips) apps::refuse_together("--round-trips " + options.round_trips, "fields of files");
+    return Mode::files;
+  }
+  if (trips) return Mode::round_trips;
   return options.study ? Mode::study : Mode::transfer;
 }
 

@@ -38,6 +38,7 @@ Manifest parse(const std::string& path, const std::string& text) {
   manifest.n_pes = json.at("pes").get<std::int32_t>();
   manifest.n_processes = json.at("processes").get<std::int32_t>();
   manifest.program = from_hex(json.at("program"));
+  manifest.run = from_hex(json.at("run"));
   manifest.note = json.at("note").get<std::string>();
   manifest.buddy_copies = json.at("buddy_copies").get<bool>();
   for (const Json& file : json.at("files"))
@@ -66,6 +67,7 @@ std::string to_text(const Manifest& manifest, const MainPart& main) {
   json["pes"] = manifest.n_pes;
   json["processes"] = manifest.n_processes;
   json["program"] = hex(manifest.program);
+  json["run"] = hex(manifest.run);
   json["note"] = manifest.note;
   json["buddy_copies"] = manifest.buddy_copies;
   json["collections"] = Json::array();

@@ -340,6 +340,7 @@ Task read_checkpoint(std::string folder, std::string state_type, std::vector<std
   pe.runtime().made_before_restart() = std::move(chosen->main.numbers);
   state = std::move(chosen->main.state);
   pe.runtime().own_checkpoints(canonical(folder)) = std::move(own);
+  pe.runtime().checkpoint_run() = chosen->manifest.run;
 }
 
 void refuse_state(std::string_view state_type, const Error& error) {

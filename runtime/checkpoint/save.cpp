@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <bit>
 #include <exception>
+#include <random>
 
 namespace tess::detail {
 namespace {
@@ -224,6 +225,20 @@ void fail_for_first(const std::vector<std::string>& errors) {
     if (!error.empty()) fail(ErrorCode::environment, "the checkpoint failed: ", error);
 }
 
+/// After a restart from another folder: the last checkpoint here that the run wrote before; 0: none.
+std::uint64_t last_before_restart(const std::string& folder, const Listing& listing,
+                                  std::uint64_t run) {
+  for (const std::uint64_t number : listing.numbers) {
+    if (!listing.is_complete(number)) continue;
+    try {
+      return read_manifest(folder_of(folder, number)).run == run ? number : 0;
+    } catch (const Error&) {
+      return 0;  // damaged, or on another host
+    }
+  }
+  return 0;
+}
+
 /// Throws Error if the folder has a checkpoint that this run neither wrote nor found at its
 /// restart: a later restart could take one run's checkpoint for the other's.
 void require_own(const std::string& folder, const Listing& listing,
@@ -234,6 +249,11 @@ void require_own(const std::string& folder, const Listing& listing,
            " is a checkpoint of another run: restart from ", folder, ", or give another folder");
 }
 
+std::uint64_t new_run() {
+  std::random_device random;
+  return std::uint64_t{random()} << 32U | random() | 1U;
+}
+
 Manifest next_manifest(Pe& pe, const Listing& before, const CheckpointOptions& options) {
   check_note(options.note);
   Manifest manifest;
@@ -241,6 +261,7 @@ Manifest next_manifest(Pe& pe, const Listing& before, const CheckpointOptions& o
   manifest.n_pes = pe.n_pes();
   manifest.n_processes = pe.machine().n_processes();
   manifest.program = Registry::fingerprint();
+  manifest.run = pe.runtime().checkpoint_run();
   manifest.note = options.note;
   manifest.buddy_copies = options.buddy_copies;
   return manifest;
@@ -330,6 +351,9 @@ Task save_all(std::string folder, MainPart main, CheckpointOptions options, Begu
     listing = list_shared(folder, pe.n_pes());
   }
   Runtime::OwnCheckpoints& ours = pe.runtime().own_checkpoints(canonical(folder));
+  std::uint64_t& run = pe.runtime().checkpoint_run();
+  if (run == 0) run = new_run();
+  if (ours.last == 0) ours.last = last_before_restart(folder, listing, run);
   require_own(folder, listing, ours);
   Manifest manifest = next_manifest(pe, listing, options);
   const std::string here = folder_of(folder, manifest.number);

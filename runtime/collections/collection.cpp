@@ -61,7 +61,11 @@ Sections& Collection::sections() {
 }
 
 PeId Collection::mapped_home(const void* index) const {
-  return index_map_->home(index, range_, pe_.n_pes());
+  try {
+    return index_map_->home(index, range_, pe_.n_pes());
+  } catch (...) {
+    pe_.rethrow_kept();
+  }
 }
 
 std::pair<std::int64_t, std::int64_t> Collection::ranks_of_blocks(bool class_places) const {

@@ -246,6 +246,14 @@ class Reader {
   std::size_t length(std::size_t least_bytes_each) {
     return checked_length(take<std::uint64_t>(), least_bytes_each);
   }
+  /// The length of a container whose items each take a byte or more, unless one that is written
+  /// takes none.
+  template <class Each>
+  std::size_t n_items() {
+    const auto n = take<std::uint64_t>();
+    if (n > remaining() && written_bytes(std::remove_const_t<Each>{}) != 0) refuse_length(n);
+    return n;
+  }
   std::size_t checked_length(std::uint64_t n, std::size_t least_bytes_each) const {
     if (least_bytes_each != 0 && n > remaining() / least_bytes_each) refuse_length(n);
     return n;
@@ -411,11 +419,11 @@ void Reader::get_items(T& container) {
     container.resize(length(sizeof(Each)));
     bytes(container.data(), container.size() * sizeof(Each));
   } else if constexpr (Resizable<T>) {
-    container.resize(length(std::is_empty_v<Each> ? 0 : 1));
+    container.resize(n_items<Each>());
     for (auto& item : container) get(item);
   } else {
     container.clear();
-    for (std::size_t n = length(1); n > 0; --n) {
+    for (std::size_t n = n_items<Each>(); n > 0; --n) {
       if constexpr (requires { typename T::mapped_type; }) {
         auto key = take<typename T::key_type>();
         auto mapped = take<typename T::mapped_type>();

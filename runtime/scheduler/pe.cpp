@@ -100,6 +100,11 @@ void Pe::keep_exception(std::exception_ptr error) {
   if (!kept_exception_) kept_exception_ = std::move(error);
 }
 
+void Pe::rethrow_kept() {
+  keep_exception(std::current_exception());
+  throw;
+}
+
 void Pe::set_forced_migrations(double chance, ElementMover* mover) {
   migration_chance_ = chance;
   mover_ = mover;
@@ -267,6 +272,7 @@ void Pe::run(Envelope* message) {
   } catch (const Error& error) {
     exception(error.what(), 2);
   } catch (const std::bad_alloc&) {
+    kept_exception_ = nullptr;
     runtime_.out_of_memory(*this, std::exchange(place_, {}));
   } catch (const std::exception& error) {
     exception(error.what(), 1);
@@ -320,6 +326,7 @@ void Pe::note_constructor(std::string_view of, std::initializer_list<std::string
 }
 
 void Pe::exception(const char* what, int exit_code) {
+  kept_exception_ = nullptr;
   note_place();
   const std::string place = std::exchange(place_, {});
   // Bad input is the user's to correct: one line without a trace. Everything else is a bug, so its

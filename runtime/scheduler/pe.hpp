@@ -247,6 +247,9 @@ class Pe {
   /// message that cannot be packed, whose epoch would wait for ever. It is rethrown at the end of
   /// the message that runs.
   void keep_exception(std::exception_ptr error);
+  /// The same for the exception that is handled, which is rethrown: it leaves user code that the
+  /// runtime called in the middle of its own work, such as a constructor.
+  [[noreturn]] void rethrow_kept();
   /// An exception leaves the code of an element: records the place for the report.
   void note_place();
   /// The same for code that is of no element: `instead` says what ran.

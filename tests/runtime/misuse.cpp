@@ -438,6 +438,16 @@ tess::Task insert_between_rounds() {
 auto blocks() {
   return tess::create<Block>(tess::range(3));
 }
+tess::Task insert_in_epoch() {
+  co_await tess::epoch([] { blocks()[{7}].insert(1); });
+}
+tess::Task create_in_epoch() {
+  co_await tess::epoch([] {
+    tess::create<Block>(tess::mapped(tess::range(3), [](tess::Index1, std::int32_t) -> tess::PeId {
+      throw std::runtime_error("the map is torn");
+    }));
+  });
+}
 
 const std::map<std::string, std::function<void()>> misuses{
     {"member_99", [] { tess::create_group<Member>()[PeId{99}].send<&Member::nothing>(); }},
@@ -474,6 +484,15 @@ const std::map<std::string, std::function<void()>> misuses{
     {"exit_-1", [] { tess::exit(-1); }},
     {"exit_256", [] { tess::exit(256); }},
     {"throw_inserted", [] { blocks()[{7}].insert(1); }},
+    {"throw_in_epoch", [] { const tess::Task task = insert_in_epoch(); }},
+    {"throw_caught",
+     [] {
+       try {
+         blocks()[{7}].insert(1);
+       } catch (const std::exception&) {
+       }
+     }},
+    {"map_throws_in_epoch", [] { const tess::Task task = create_in_epoch(); }},
     {"throw_initial", [] { tess::create<Block>(tess::range(1), 1); }},
     {"check_inserted", [] { blocks()[{7}].insert_on(PeId{0}, 2); }},
     {"place_77", [] { tess::create<Placed<77>>(tess::sparse)[{4}].insert(); }},

@@ -145,7 +145,7 @@ class GmshFields : public FieldReader {
     file.move_to(section.begin);
     file.set_binary(binary_);
     for (std::size_t i = 0; i < section.n; ++i) {
-      const int tag = file.number<int>();
+      const std::int64_t tag = binary_ ? file.number<int>() : file.number<std::int64_t>();
       const VertexId place = tag < 0 ? -1 : places.find(static_cast<std::uint64_t>(tag));
       if (place < 0) {
         if (nodal)

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstring>
 #include <optional>
 #include <type_traits>
@@ -214,7 +215,16 @@ std::vector<T> VtuFile::numbers(const VtuArray& array, std::size_t n) const {
 }
 
 std::vector<double> VtuFile::reals(const VtuArray& array, std::size_t n) const {
-  return numbers<double>(array, n);
+  std::vector<double> out = numbers<double>(array, n);
+  constexpr double inexact = 9007199254740992;  // 2^53
+  if (array.type == "Int64" || array.type == "UInt64")
+    for (const double value : out)
+      if (!(std::abs(value) < inexact))
+        fail(ErrorCode::bad_value, path_, ": array '", printable(array.name), "' of type ",
+             array.type,
+             " has a number from ±2^53 on, which a double does not hold exactly; write "
+             "it as Float64, or choose other fields");
+  return out;
 }
 std::vector<std::int64_t> VtuFile::integers(const VtuArray& array, std::size_t n) const {
   return numbers<std::int64_t>(array, n);

@@ -44,7 +44,8 @@ class VtuFile {
   [[nodiscard]] const VtuArray& array(const std::vector<VtuArray>& arrays,
                                       std::string_view name) const;
   static constexpr std::size_t any = std::numeric_limits<std::size_t>::max();
-  /// Its numbers. Throws Error (bad_file) unless there are `n`.
+  /// Its numbers. Throws Error (bad_file) unless there are `n`, and (bad_value) if an integer does
+  /// not fit a double.
   [[nodiscard]] std::vector<double> reals(const VtuArray& array, std::size_t n) const;
   [[nodiscard]] std::vector<std::int64_t> integers(const VtuArray& array, std::size_t n) const;
 

@@ -79,7 +79,7 @@ class Array final : public ArrayOf<typename C::Index> {
     if (this->index_map() != nullptr) [[unlikely]]
       return this->mapped_home(&index);
     if constexpr (requires { C::place(index, this->pe_.n_pes()); }) {
-      const PeId at = C::place(index, this->pe_.n_pes());
+      const PeId at = placed(index);
       if (at.value < 0 || at.value >= this->pe_.n_pes()) this->refuse_place(index_text(index), at);
       return at;
     } else {
@@ -225,6 +225,14 @@ class Array final : public ArrayOf<typename C::Index> {
   }
 
  private:
+  /// What place() of the class gives.
+  [[nodiscard]] PeId placed(const Index& index) const {
+    try {
+      return C::place(index, this->pe_.n_pes());
+    } catch (...) {
+      this->pe_.rethrow_kept();
+    }
+  }
   static std::unique_ptr<Collection> make(Pe& pe, CollectionId id, const Range& range) {
     return std::make_unique<Array>(pe, id, range);
   }

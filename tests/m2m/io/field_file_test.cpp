@@ -449,21 +449,32 @@ TEST_CASE("a field with two values for a place, or one for a node that is none, 
   CHECK_THAT(
       refusal(text_of({"NodeData", "p", 0, 0, rows}, false)),
       Catch::Contains("variable 'p' has a value for node 999, which the file does not have"));
-  const std::string array =
-      "<DataArray type=\"Float64\" Name=\"f\" format=\"ascii\">1 2 3 4</DataArray>";
-  const std::string path = scratch.write(
-      "twice.vtu",
-      "<VTKFile type=\"UnstructuredGrid\" byte_order=\"LittleEndian\"><UnstructuredGrid><Piece "
-      "NumberOfPoints=\"4\" NumberOfCells=\"1\"><PointData>" +
-          array + array +
-          "</PointData><Points><DataArray type=\"Float64\" NumberOfComponents=\"3\" "
-          "format=\"ascii\">0 0 0 1 0 0 0 1 0 0 0 1</DataArray></Points><Cells><DataArray "
-          "type=\"Int64\" Name=\"connectivity\" format=\"ascii\">0 1 2 3</DataArray><DataArray "
-          "type=\"Int64\" Name=\"offsets\" format=\"ascii\">4</DataArray><DataArray type=\"UInt8\" "
-          "Name=\"types\" "
-          "format=\"ascii\">10</DataArray></Cells></Piece></UnstructuredGrid></VTKFile>\n");
-  CHECK_THAT(message_of([&] { (void)FieldFile(path).vertex_field(read_mesh(path), "f", 0); }),
-             Catch::Contains("there are two arrays f in one section"));
+  const auto file_with = [&](const std::string& arrays) {
+    return scratch.write(
+        "data.vtu",
+        "<VTKFile type=\"UnstructuredGrid\" byte_order=\"LittleEndian\"><UnstructuredGrid><Piece "
+        "NumberOfPoints=\"4\" NumberOfCells=\"1\"><PointData>" +
+            arrays +
+            "</PointData><Points><DataArray type=\"Float64\" NumberOfComponents=\"3\" "
+            "format=\"ascii\">0 0 0 1 0 0 0 1 0 0 0 1</DataArray></Points><Cells><DataArray "
+            "type=\"Int64\" Name=\"connectivity\" format=\"ascii\">0 1 2 3</DataArray><DataArray "
+            "type=\"Int64\" Name=\"offsets\" format=\"ascii\">4</DataArray><DataArray "
+            "type=\"UInt8\" Name=\"types\" "
+            "format=\"ascii\">10</DataArray></Cells></Piece></UnstructuredGrid></VTKFile>\n");
+  };
+  const auto array = [](const std::string& type, const std::string& values) {
+    return "<DataArray type=\"" + type + "\" Name=\"f\" format=\"ascii\">" + values +
+           "</DataArray>";
+  };
+  const auto vtu_refusal = [&](const std::string& arrays) {
+    const std::string path = file_with(arrays);
+    return message_of([&] { (void)FieldFile(path).vertex_field(read_mesh(path), "f", 0); });
+  };
+  const std::string reals = array("Float64", "1 2 3 4");
+  CHECK_THAT(vtu_refusal(reals + reals), Catch::Contains("there are two arrays f in one section"));
+  CHECK(vtu_refusal(array("Int64", "1 2 3 -9007199254740991")).empty());
+  CHECK_THAT(vtu_refusal(array("Int64", "1 2 3 9007199254740993")),
+             Catch::Contains("array 'f' of type Int64 has a number from ±2^53 on"));
 }
 
 TEST_CASE("a view that gmsh saved is read", "[m2m][io][.][meshes]") {

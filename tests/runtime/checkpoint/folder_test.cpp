@@ -24,7 +24,8 @@ using Numbers = std::vector<std::uint64_t>;
 struct Job {
   std::string from, folder;
   int n_steps = 1;
-  std::string other{};  ///< after the first step this checkpoint is put into the folder
+  std::string second{};  ///< each checkpoint is written into this folder, too
+  std::string other{};   ///< after the first step this checkpoint is put into the folder
   std::string refused{};
   std::int32_t step = 0;
 
@@ -39,6 +40,7 @@ struct Job {
       co_await world::advance(state);
       try {
         co_await tess::checkpoint(folder, state);
+        if (!second.empty()) co_await tess::checkpoint(second, state);
       } catch (const tess::Error& error) {
         refused += error.what();
       }
@@ -85,6 +87,23 @@ TEST_CASE("a run that begins anew writes no checkpoint beside those of another r
   run(same);
   CHECK(same.refused.empty());
   CHECK(tess::detail::numbers_in(folder) == Numbers{3, 2});
+}
+
+TEST_CASE("a run with two folders goes on with both after a restart from one",
+          "[runtime][checkpoint]") {
+  const tess::test::Scratch scratch;
+  const std::string often = scratch.path("often"), rarely = scratch.path("rarely");
+  Job first{.from = "", .folder = often, .n_steps = 2, .second = rarely};
+  run(first);
+  Job again{.from = often, .folder = often, .n_steps = 2, .second = rarely};
+  run(again);
+  CHECK(again.refused.empty());
+  CHECK(tess::detail::numbers_in(rarely) == Numbers{4, 3});
+
+  Job other{.from = "", .folder = scratch.path("other"), .second = rarely};
+  run(other);
+  CHECK(other.refused.find("rarely/checkpoint-000004 is a checkpoint of another run") !=
+        std::string::npos);
 }
 
 TEST_CASE("a checkpoint that another run writes meanwhile is noticed", "[runtime][checkpoint]") {

@@ -10,6 +10,7 @@
 #include <complex>
 #include <deque>
 #include <limits>
+#include <list>
 #include <map>
 #include <memory>
 #include <set>
@@ -51,6 +52,13 @@ struct Listed {
   std::vector<std::string> names{"a", "b"};
   std::map<std::string, std::vector<int>> map{{"x", {1, 2}}};
   friend bool operator==(const Listed&, const Listed&) = default;
+};
+/// Writes nothing.
+struct Bare {
+  int cache = 0;
+  template <class Ar>
+  void serialize(Ar& /*ar*/) {}
+  friend auto operator<=>(const Bare&, const Bare&) = default;
 };
 /// Members that are arrays of C.
 struct Arrays {
@@ -184,6 +192,18 @@ TEST_CASE("a unique_ptr to a class with virtual functions comes back", "[runtime
   CHECK(back->n == 4);
   CHECK(tess::from_bytes<std::unique_ptr<Shape>>(tess::to_bytes(std::unique_ptr<Shape>())) ==
         nullptr);
+}
+
+TEST_CASE("containers of items that take no bytes come back with all of them",
+          "[runtime][serialize]") {
+  const auto size_of_copy = [](const auto& items) {
+    return tess::from_bytes<std::decay_t<decltype(items)>>(tess::to_bytes(items)).size();
+  };
+  CHECK(size_of_copy(std::vector<Bare>(3)) == 3);
+  CHECK(size_of_copy(std::vector<std::pair<Bare, Bare>>(4)) == 4);
+  CHECK(size_of_copy(std::deque<Bare>(5)) == 5);
+  CHECK(size_of_copy(std::list<Bare>(6)) == 6);
+  CHECK(size_of_copy(std::map<Bare, Bare>{{Bare{1}, Bare{}}}) == 1);
 }
 
 TEST_CASE("an announced length beyond the bytes is refused before memory is taken", "[runtime]") {
