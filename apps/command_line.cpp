@@ -78,6 +78,11 @@ Option& Option::separated_by(char separator) {
   return *this;
 }
 
+Option& Option::joined_by(char separator) {
+  option_->join(separator);
+  return *this;
+}
+
 Option& Option::takes(int least, int most) {
   option_->expected(least, most);
   return *this;

@@ -26,6 +26,8 @@ class Option {
   Option& one_of(const std::vector<std::string>& values);
   /// "a,b,c" are three values.
   Option& separated_by(char separator);
+  /// Given several times, the values are one, with this between them.
+  Option& joined_by(char separator);
   /// So many values follow.
   Option& takes(int least, int most);
   /// Known once the line is parsed.

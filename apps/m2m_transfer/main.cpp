@@ -40,7 +40,8 @@ Given add_options(apps::CommandLine& line, DriverOptions& options, std::string& 
   line.option("--pairs A:B,B:C", request.pairs,
               "which mesh gives values to which, by letter (A is SOURCE, B is TARGET) or file. "
               "Pairs run in the order given where they share a mesh that is written, otherwise at "
-              "once");
+              "once")
+      .joined_by(',');
   line.option("--policy POLICY", options.policies,
               "value of vertices outside the source: keep, value:V or nearest");
   line.option("--tolerance LENGTH", request.tolerance,
