@@ -30,7 +30,12 @@ class WeightsReader {
 
   [[nodiscard]] std::uint64_t length(std::string_view name) const {
     for (const NetcdfDimension& dimension : header_.dimensions)
-      if (dimension.name == name) return dimension.length;
+      if (dimension.name == name) {
+        if (dimension.length == 0 && header_.n_records != 0)
+          fail(ErrorCode::bad_file, path_, ": dimension ", name,
+               " is the record dimension; fix it with ncks --fix_rec_dmn all");
+        return dimension.length;
+      }
     missing("dimension", name);
   }
 

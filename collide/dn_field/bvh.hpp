@@ -63,6 +63,10 @@ class Bvh {
   /// The unit normal of a triangle of the surface; zero for a degenerate one.
   [[nodiscard]] Vec3 normal(std::uint32_t triangle) const { return normals_[triangle]; }
 
+  /// The unit normal of the nearest triangle that has one within sqrt(`limit2`); zero if there is
+  /// none.
+  [[nodiscard]] Vec3 nearest_normal(Vec3 p, double limit2) const;
+
   /// The triangle at a place of a PointBlock.
   [[nodiscard]] const PreparedTriangle& triangle(std::uint64_t place) const {
     return prepared_[place];

@@ -17,7 +17,7 @@ template <class Real, std::size_t D>
   Box<Real, D> out;
   for (std::size_t k = 0; k < D; ++k) {
     out.lo[k] = std::max(box.lo[k], to.lo[k]);
-    out.hi[k] = std::min(box.hi[k], to.hi[k]);
+    out.hi[k] = std::max(out.lo[k], std::min(box.hi[k], to.hi[k]));
   }
   return out;
 }
@@ -55,8 +55,9 @@ bool VoxelSearch<Real, D>::solve(const TheProblem& problem, const TheBox& region
     compare(problem);
     return true;
   }
-  const TheBox bounds =
-      depth == 0 ? region : clipped(bounds_of(problem.boxes_a, problem.a), region);
+  // The region of a cell is rounded: the grid may keep to it, but objects outside may touch in it.
+  const TheBox of_a = depth == 0 ? region : bounds_of(problem.boxes_a, problem.a);
+  const TheBox bounds = depth == 0 ? region : clipped(of_a, region);
   const Grid<Real, D> grid(bounds, choice ? choice->n_cells : choose(problem, bounds, depth));
   if (grid.size() == 1) {
     compare(problem);
@@ -65,7 +66,7 @@ bool VoxelSearch<Real, D>::solve(const TheProblem& problem, const TheBox& region
 
   if (levels_.size() == depth) levels_.emplace_back();
   Level& level = levels_[depth];
-  if (!sort_into_voxels(problem, bounds, grid, level)) return false;
+  if (!sort_into_voxels(problem, of_a, grid, level)) return false;
   const auto cell_size = static_cast<double>(grid.cell_size());
   if (statistics_.voxel_size == 0 || cell_size < statistics_.voxel_size)
     statistics_.voxel_size = cell_size;
@@ -114,10 +115,11 @@ CellAt<D> VoxelSearch<Real, D>::choose(const TheProblem& problem, const TheBox& 
 }
 
 /// Calls take(cells, entries, n) for the cells that the boxes touch, some hundred at a time, in the
-/// order of the boxes. False if take() is. The first time, the codes of all boxes are found.
+/// order of the boxes. False if take() is. The first time, the codes of all boxes are found. Boxes
+/// of b that do not touch `of_a`, the bounds of all of a, are left out.
 template <class Real, std::size_t D>
 template <bool is_b, bool again, class Take>
-bool VoxelSearch<Real, D>::spread(const TheProblem& problem, const TheBox& bounds,
+bool VoxelSearch<Real, D>::spread(const TheProblem& problem, const TheBox& of_a,
                                   const Grid<Real, D>& grid, Level& level, const Take& take) {
   constexpr std::size_t ahead = 24, most = 512;
   const TheBox* const boxes = is_b ? problem.boxes_b : problem.boxes_a;
@@ -132,7 +134,7 @@ bool VoxelSearch<Real, D>::spread(const TheProblem& problem, const TheBox& bound
     const TheBox& box = boxes[object_of(entry)];
     if constexpr (!again) {
       if (i + ahead < entries.size()) prefetch(boxes[object_of(entries[i + ahead])]);
-      codes[i] = is_b && !overlap(box, bounds, Touching::counts) ? outside : grid.code(box);
+      codes[i] = is_b && !overlap(box, of_a, Touching::counts) ? outside : grid.code(box);
     }
     const std::uint32_t code = codes[i];
     if (is_b && code == outside) continue;
@@ -160,7 +162,7 @@ bool VoxelSearch<Real, D>::spread(const TheProblem& problem, const TheBox& bound
 
 /// A counting sort.
 template <class Real, std::size_t D>
-bool VoxelSearch<Real, D>::sort_into_voxels(const TheProblem& problem, const TheBox& bounds,
+bool VoxelSearch<Real, D>::sort_into_voxels(const TheProblem& problem, const TheBox& of_a,
                                             const Grid<Real, D>& grid, Level& level) {
   const std::size_t n_cells = grid.size();
   const std::size_t most = &level == &levels_.front() ? most_entries_ : ~std::size_t{0};
@@ -177,8 +179,8 @@ bool VoxelSearch<Real, D>::sort_into_voxels(const TheProblem& problem, const The
       return n_entries <= most;
     };
   };
-  if (!spread<false, false>(problem, bounds, grid, level, count(&Cell::a)) ||
-      !spread<true, false>(problem, bounds, grid, level, count(&Cell::b)))
+  if (!spread<false, false>(problem, of_a, grid, level, count(&Cell::a)) ||
+      !spread<true, false>(problem, of_a, grid, level, count(&Cell::b)))
     return false;
   statistics_.n_entries += n_entries;
 
@@ -211,8 +213,8 @@ bool VoxelSearch<Real, D>::sort_into_voxels(const TheProblem& problem, const The
       return true;
     };
   };
-  return spread<false, true>(problem, bounds, grid, level, place(&Cell::a)) &&
-         spread<true, true>(problem, bounds, grid, level, place(&Cell::b));
+  return spread<false, true>(problem, of_a, grid, level, place(&Cell::a)) &&
+         spread<true, true>(problem, of_a, grid, level, place(&Cell::b));
 }
 
 template <class Real, std::size_t D>

@@ -117,6 +117,9 @@ void refuse_bad_counts(const std::string& name, std::uint64_t n_points, std::uin
   if (n_points > static_cast<std::uint64_t>(std::numeric_limits<VertexId>::max()))
     fail(ErrorCode::bad_mesh, shown(name), ": has ", n_points,
          " vertices; at most 2147483647 fit in one mesh, split it");
+  if (n_tets > static_cast<std::uint64_t>(std::numeric_limits<VertexId>::max()))
+    fail(ErrorCode::bad_mesh, shown(name), ": has ", n_tets,
+         " tetrahedra; at most 2147483647 fit in one mesh, split it");
 }
 
 }  // namespace tess::m2m

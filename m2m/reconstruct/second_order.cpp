@@ -83,7 +83,7 @@ void second_order_values(MeshView mesh, std::span<const PointInTet> points,
       ValueRange range = no_range;
       for (std::size_t i = 0; i < 4; ++i) {
         const std::size_t at = static_cast<std::size_t>(tet[i]) * n_components + c;
-        value += dot(arms[i], gradients[at]);
+        if (weights[i] != 0) value += dot(arms[i], gradients[at]);  // its gradient may be NaN
         if (limit == Limit::tetrahedron) include(range, values[at]);
         if (limit == Limit::patch) include(range, patch_ranges[at]);
       }

@@ -85,8 +85,11 @@ void Worker::commit(CouplingId coupling) {
                   values_.data() + v * n_components_);
   const std::span<const Status> status = this->status(coupling);
   status_.assign(status.begin(), status.end());
-  const std::span<const double> distance = this->distance(coupling);
-  std::copy(distance.begin(), distance.end(), distance_.begin());
+  const std::span<const double> distance = this->distance(coupling);  // empty: conservative kinds
+  if (distance.empty())
+    std::ranges::fill(distance_, 0.0);
+  else
+    std::ranges::copy(distance, distance_.begin());
 }
 
 void Worker::gather(Callback<Outcome> target) {

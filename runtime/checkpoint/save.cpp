@@ -233,7 +233,7 @@ std::uint64_t last_before_restart(const std::string& folder, const Listing& list
     try {
       return read_manifest(folder_of(folder, number)).run == run ? number : 0;
     } catch (const Error&) {
-      return 0;  // damaged, or on another host
+      return 0;  // damaged, or only on another host
     }
   }
   return 0;

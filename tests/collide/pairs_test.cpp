@@ -219,6 +219,38 @@ TEST_CASE("objects that reach over the parts of a divided voxel make each pair o
   REQUIRE((sorted(pairs(a, b, options)) == expected_of_sets(a, b, Touching::counts)));
 }
 
+TEST_CASE("sheets that lie on the rounded borders of divided voxels lose no pair of two sets",
+          "[pairs]") {
+  // Voxels have edges of 1 / per_unit if the width is divided into a power of two.
+  for (const double per_unit : {10.0, 20.0, 49.0})
+    for (const int doublings : {3, 4, 5, 6})
+      for (const double sheet : {3.0, 6.0, 7.0, per_unit}) {
+        Random random(static_cast<std::uint64_t>(sheet));
+        const double width = std::ldexp(1.0, doublings) / per_unit;
+        std::vector<Box<double, 2>> boxes(6000);
+        for (std::size_t i = 0; i < boxes.size(); ++i) {
+          const bool in_sheet = i % 32 != 0;
+          const double x = width * (in_sheet ? 0.1 : 1.0) * random.uniform();
+          const double y = in_sheet ? sheet / per_unit : random.uniform();
+          boxes[i] = {{x, y}, {std::min(x + 1e-4, width), y}};
+        }
+        boxes.front() = {{0, 0}, {0, 0}};
+        boxes[1] = {{width, 1}, {width, 1}};
+        const std::span<const Box<double, 2>> all(boxes), a = all.first(3000),
+                                                          b = all.subspan(3000);
+        const auto wanted = expected_of_sets(a, b, Touching::counts);
+        for (const double size : {0.0, 0.01 / per_unit})
+          for (const auto method : {PairMethod::automatic, PairMethod::bisection}) {
+            CAPTURE(per_unit, doublings, sheet, size, static_cast<int>(method));
+            PairOptions options;
+            options.method = method;
+            options.voxel_size = size;
+            REQUIRE((sorted(pairs(a, b, options)) == wanted));
+            REQUIRE(count_pairs(b, a, options) == wanted.size());
+          }
+      }
+}
+
 TEST_CASE("a grid of touching cubes has the pairs that a count gives", "[pairs]") {
   // Boxes [i/10, i/10 + 3/20] per axis: 93 556 pairs, of which another library loses 15 %.
   std::vector<Aabb> boxes;

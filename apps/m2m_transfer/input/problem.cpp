@@ -1,5 +1,6 @@
 #include "apps/m2m_transfer/input/problem.hpp"
 
+#include "apps/m2m_transfer/input/await_all.hpp"
 #include "apps/m2m_transfer/input/formulas.hpp"
 #include "apps/m2m_transfer/input/lists.hpp"
 #include "m2m/read_mesh.hpp"
@@ -76,6 +77,14 @@ Formula formula_of(const std::string& name, const Aabb& domain, const std::strin
   }
 }
 
+/// If a source is written after it was read, the next run of the pairs begins with other values.
+bool changes_with_repeats(const std::vector<Pair>& pairs) {
+  for (std::size_t i = 0; i < pairs.size(); ++i)
+    for (std::size_t j = i + 1; j < pairs.size(); ++j)
+      if (pairs[j].target == pairs[i].source) return true;
+  return false;
+}
+
 /// The first source is surveyed before the others: the formulas depend on its bounds. It is sampled
 /// when it is placed.
 Task read_meshes(const Request& request, Problem& problem) {
@@ -92,7 +101,7 @@ Task read_meshes(const Request& request, Problem& problem) {
   std::vector<Task> tasks;
   for (std::size_t m = 0; m < problem.meshes.size(); ++m)
     if (m != first) tasks.push_back(read_one(problem, m));
-  for (Task& task : tasks) co_await task;
+  co_await await_all(std::move(tasks));
 }
 
 TransferReport report_of(const Problem& problem, const Pair& pair, const Request& request) {
@@ -144,6 +153,9 @@ Task load(Request request, Problem* out) {
   std::vector<std::string> names{request.source, request.target};
   names.insert(names.end(), request.more.begin(), request.more.end());
   problem.pairs = parse_pairs(request.pairs, names);
+  if (request.repeat > 1 && changes_with_repeats(problem.pairs))
+    fail(ErrorCode::bad_argument, "--repeat ", request.repeat,
+         " does not work with --pairs that write a mesh after it gave values; give --steps");
   if (names.size() > 2 && request.pairs.empty())
     fail(ErrorCode::bad_argument, names.size(),
          " meshes are given, but no --pairs; give for example --pairs A:B,B:C");

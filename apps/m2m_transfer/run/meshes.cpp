@@ -1,8 +1,10 @@
 #include "apps/m2m_transfer/run/meshes.hpp"
 
+#include "apps/m2m_transfer/input/await_all.hpp"
 #include "m2m/placement.hpp"
 
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace m2m_transfer {
@@ -22,7 +24,7 @@ Task place_together(const Problem& problem, TransferKind kind, std::int32_t n_pa
     tasks.push_back(mesh.mesh ? tess::m2m::place(&*mesh.mesh, options, &placed[m])
                               : tess::m2m::place(mesh.name, options, &placed[m]));
   }
-  for (Task& task : tasks) co_await task;
+  co_await await_all(std::move(tasks));
   for (const PlacedMesh& mesh : placed) meshes.push_back(mesh.mesh);
 }
 

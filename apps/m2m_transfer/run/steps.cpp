@@ -1,5 +1,7 @@
 #include "apps/m2m_transfer/run/steps.hpp"
 
+#include "apps/m2m_transfer/input/await_all.hpp"
+
 #include <algorithm>
 
 namespace m2m_transfer {
@@ -37,7 +39,7 @@ Task GraphRun::search() {
   tasks.reserve(transfers_.size());
   for (std::size_t p = 0; p < transfers_.size(); ++p)
     tasks.push_back(search_one(transfers_[p], found_[p]));
-  for (Task& task : tasks) co_await task;
+  co_await await_all(std::move(tasks));
   for (std::size_t p = 0; p < transfers_.size(); ++p) {
     seconds_[p].broad = found_[p].broad;
     seconds_[p].narrow = found_[p].narrow;
@@ -85,7 +87,7 @@ Task GraphRun::search_again() {
     tasks.push_back(search_one(transfers_[p], found_[p]));
     pairs.push_back(p);
   }
-  for (Task& task : tasks) co_await task;
+  co_await await_all(std::move(tasks));
   for (const std::size_t p : pairs)
     keep_least(seconds_[p].again, found_[p].broad + found_[p].narrow);
   ++searches_;
@@ -103,7 +105,7 @@ Task GraphRun::apply_levels(bool audited) {
     std::vector<Task> tasks;
     tasks.reserve(pairs.size());
     for (const std::size_t p : pairs) tasks.push_back(apply(p));
-    for (Task& task : tasks) co_await task;
+    co_await await_all(std::move(tasks));
     for (const std::size_t p : pairs)
       origin_[problem_.pairs[p].target] = origin_[problem_.pairs[p].source];
     if (audited)

@@ -39,7 +39,7 @@ double distance_at(const tess::dn::Object& object, tess::dn::Vec3 p) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const int a = static_cast<int>(axis), last = grid.n[axis] - 1;
     const double at = (component(p, a) - component(grid.origin, a)) / grid.cell;
-    if (!(at >= 0 && at <= last)) return HUGE_VAL;
+    if (last < 1 || !(at >= 0 && at <= last)) return HUGE_VAL;
     low[axis] = static_cast<int>(std::min(std::floor(at), last - 1.0));
     part[axis] = at - low[axis];
   }

@@ -136,9 +136,9 @@ void surface_flow(Rows& rows) {
         now.position = {0, 0, 0.5};
         const double angle = std::atan2(sign * now.velocity.z, now.velocity.x);
         const double expected = std::max(0.0, 0.25 * pi * (1 - i * step / total));
-        kept = std::max(kept, std::abs(norm(now.velocity) / speed - 1));
-        off = std::max(off, std::abs(angle - expected));
-        rising = std::max(rising, angle - before);
+        worsen(kept, std::abs(norm(now.velocity) / speed - 1));
+        worsen(off, std::abs(angle - expected));
+        worsen(rising, angle - before);
         before = angle;
       }
     }
@@ -156,16 +156,16 @@ void bounces(Rows& rows) {
     Rules rules = impact(1, Sweep::off);
     rules.gravity = Gravity{{0, 0, -1}};
     Particle now{{0, 0, 0.5}, {}};
-    double most = 0, least = HUGE_VAL;
+    double most = 0, low = -HUGE_VAL;  // −the least
     for (int i = 0; i < 2000; ++i) {
       now = flown(rules, step, 1, {&object, 1}, now);
       const double energy = now.position.z + 0.5 * dot(now.velocity, now.velocity);
-      most = std::max(most, energy), least = std::min(least, energy);
+      worsen(most, energy), worsen(low, -energy);
     }
     rows.add("bounces, restitution 1: gain", "dt √(g/h)", step * std::sqrt(2.0), most / 0.5 - 1,
              1e-6);
     if (step < 0.05)
-      rows.add("bounces, restitution 1: loss", "dt √(g/h)", step * std::sqrt(2.0), 1 - least / 0.5,
+      rows.add("bounces, restitution 1: loss", "dt √(g/h)", step * std::sqrt(2.0), 1 + low / 0.5,
                1e-6);
     rules.impact->restitution = 0;
     now =

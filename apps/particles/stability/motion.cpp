@@ -28,7 +28,7 @@ void fast(Rows& rows) {
         const Object object{&field, {}};
         const Particle end = flown(rules, 1, n_steps, {&object, 1}, start);
         tunnelled += dot(end.position, outward) > 0 && dot(end.velocity, outward) > 0 ? 0 : 1;
-        changed = std::max(changed, total_speed_error(end, speed));
+        worsen(changed, total_speed_error(end, speed));
       };
       for (int i = 0; i < 40; ++i) {
         const Vec3 side{0, 0, i % 2 == 0 ? 1.0 : -1.0}, aim{0.01 * i - 0.2, 0.1 - 0.005 * i, 0};
@@ -227,7 +227,7 @@ void all_rules(Rows& rows) {
         const double depth = std::max(0.0, reach - distance);
         const double energy = 0.5 * dot(v, v) - dot(g, x) + 0.5 * k * depth * depth;
         if (!(energy < HUGE_VAL)) gain = HUGE_VAL;
-        if (i > 100) gain = std::max(gain, energy / (before[p] + 2) - 1);
+        if (i > 100) worsen(gain, energy / (before[p] + 2) - 1);
         if (i > 100)
           before[p] = std::min(before[p], energy);
         else

@@ -5,6 +5,7 @@
 #include "collide/dn_field/made_field.hpp"
 #include "collide/dn_field/stepper.hpp"
 
+#include <cmath>
 #include <utility>
 
 namespace tess::dn::stability {
@@ -17,6 +18,11 @@ struct Rows {
         {std::move(name), std::move(parameter), value, met, tolerance, met <= tolerance});
   }
 };
+
+/// std::max, but NaN is the worst of all.
+inline void worsen(double& worst, double value) {
+  if (value > worst || std::isnan(value)) worst = value;
+}
 
 struct Particle {
   Vec3 position, velocity;

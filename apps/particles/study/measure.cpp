@@ -96,7 +96,7 @@ void compare(const Field& field, LookUp kind, const Samples& samples, StudyRow& 
     distances.add(error);
     row.distance_error_max = std::max(row.distance_error_max, error);
     const Vec3 normal{nx[i], ny[i], nz[i]};
-    if (normal != Vec3{}) angles.add(degrees_between(normal, samples.normal[i]));
+    angles.add(normal != Vec3{} ? degrees_between(normal, samples.normal[i]) : 180);
   }
   row.distance_error = distances.value();
   row.normal_error = angles.value();
@@ -132,6 +132,7 @@ void compare_bounces(const Object& object, const Rules& rules, double dt, const 
     places.add(norm(b.start + time * b.velocity - b.hit));
     angles.add(degrees_between(velocity, b.outgoing));
   }
+  if (places.n == 0) return;  // not measured
   row.place_error = places.value();
   row.angle_error = angles.value();
 }

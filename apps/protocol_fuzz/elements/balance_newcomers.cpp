@@ -17,7 +17,7 @@ struct World {
   Trial& trial;
   std::uint64_t seed = 0;
   int n_phases = 1;  // of an era
-  double create_chance = 0, destroy_chance = 0;
+  double create_chance = 0, destroy_chance = 0, leave_chance = 0;
   std::atomic<int> n_created{0}, n_alive{0};
   std::array<std::atomic<int>, most_rounds> lives_in{}, reached{};
 
@@ -35,13 +35,15 @@ class Settler : public Chare<Settler, Index1> {
   explicit Settler(int called_from) : called_from_(called_from) {}
 
   Task begin(int round) {
-    if (round >= called_from_) co_await run(round);  // else its creator has called it, or will
+    if (!leaves_ && round >= called_from_)
+      co_await run(round);  // else its creator has called it, or will
   }
   Task run(int round) {
     round_ = round;
     return phase();
   }
   Task resume_from_sync() {
+    if (leaves_) co_return;  // it ends when the code that destroyed it is done
     const auto r = static_cast<std::size_t>(round_++);
     world->trial.expect(world->reached[r] == world->lives_in[r], element_text(*this),
                         " is past round ", r, ", in which ", world->lives_in[r].load(),
@@ -51,7 +53,7 @@ class Settler : public Chare<Settler, Index1> {
   [[nodiscard]] std::array<double, 3> balance_position() const { return {1.0 * index().x, 0, 0}; }
   template <class Ar>
   void serialize(Ar& ar) {
-    ar(called_from_, round_);
+    ar(called_from_, round_, leaves_);
   }
 
  private:
@@ -76,8 +78,14 @@ class Settler : public Chare<Settler, Index1> {
     }
     ++world->reached[static_cast<std::size_t>(round_)];
     at_sync();
+    if (!random.chance(world->leave_chance)) co_return;
+    leaves_ = true;  // it ends while it waits
+    --world->n_alive;
+    if (round_ + 1 < world->end_of_era(round_)) world->change(round_ + 1, -1);
+    destroy();
   }
   int called_from_ = 0, round_ = 0;
+  bool leaves_ = false;
 };
 
 Task eras(int n_eras, int n_first, int n_new, BalanceOptions options) {
@@ -106,6 +114,7 @@ void balance_newcomers(Trial& trial) {
   here.n_phases = trial.draw(1, most_phases);
   here.create_chance = 0.1 * trial.draw(0, 3);
   here.destroy_chance = 0.1 * trial.draw(0, 2);
+  here.leave_chance = std::array{0.0, 0.0, 0.2, 1.0}[static_cast<std::size_t>(trial.draw(0, 3))];
   const int n_eras = trial.draw(1, most_eras), n_first = trial.draw(0, 10),
             n_new = trial.draw(0, 4);
   BalanceOptions options;

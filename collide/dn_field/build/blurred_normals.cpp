@@ -67,9 +67,10 @@ void blur_layers(const Grid& grid, int radius, std::span<const float> before,
     }
 }
 
-std::uint32_t code_of(float x, float y, float z) {
-  if (std::fabs(x) + std::fabs(y) + std::fabs(z) < least_vector) return no_normal;
-  return encode_normal(
+/// Sets the normal; far from the surface, where the blur has died away, it stays exact.
+void set_normal(std::uint32_t& code, float x, float y, float z) {
+  if (std::fabs(x) + std::fabs(y) + std::fabs(z) < least_vector) return;
+  code = encode_normal(
       direction({static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)}));
 }
 
@@ -147,7 +148,7 @@ void BlurredNormals::set_normals(Field& field, int first, int last) const {
   const Grid& grid = field.grid;
   for (std::size_t at = grid.index(0, 0, first); at < grid.index(0, 0, last); ++at)
     if (field.normal[at] != no_normal)
-      field.normal[at] = code_of(parts[0][at], parts[1][at], parts[2][at]);
+      set_normal(field.normal[at], parts[0][at], parts[1][at], parts[2][at]);
 }
 
 /// Voxels of the surface, the ridge of the potential without gradient, keep their exact normals.
@@ -170,9 +171,9 @@ void BlurredNormals::set_gradients(Field& field, int first, int last) const {
         }
         if (field.normal[at] == no_normal) continue;
         const float sign = field.distance[at] < 0 ? -1.0F : 1.0F;
-        field.normal[at] = code_of(sign * slope(at, i, grid.n[0], 1),
-                                   sign * slope(at, j, grid.n[1], grid.index(0, 1, 0)),
-                                   sign * slope(at, k, grid.n[2], grid.index(0, 0, 1)));
+        set_normal(field.normal[at], sign * slope(at, i, grid.n[0], 1),
+                   sign * slope(at, j, grid.n[1], grid.index(0, 1, 0)),
+                   sign * slope(at, k, grid.n[2], grid.index(0, 0, 1)));
       }
 }
 

@@ -49,9 +49,16 @@ void Distances::fill_block(Field& field, int i, int j, int k) const {
         const double sign = field.distance[at] < 0 ? -1 : 1;
         field.distance[at] = static_cast<float>(sign * distance);
         if (field.normal.empty()) continue;
-        const bool touching = distance < on_surface * grid.cell;
-        field.normal[at] = encode_normal(touching ? triangle.normal : sign * offset);
+        field.normal[at] = encode_normal(distance < on_surface * grid.cell
+                                             ? normal_at(triangle, grid.centre(x, y, z), grid.cell)
+                                             : sign * offset);
       }
+}
+
+/// At a point of the surface. A degenerate triangle there has no normal, but those beside it do.
+Vec3 Distances::normal_at(const PreparedTriangle& triangle, Vec3 p, double cell) const {
+  const double reach = 2 * on_surface * cell;
+  return triangle.normal != Vec3{} ? triangle.normal : tree_.nearest_normal(p, reach * reach);
 }
 
 void Distances::fill_shelf(Field& field, int first) const {

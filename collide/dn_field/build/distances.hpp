@@ -25,6 +25,7 @@ class Distances {
  private:
   void fill_shelf(Field& field, int first) const;  // the layers of a block
   void fill_block(Field& field, int i, int j, int k) const;
+  [[nodiscard]] Vec3 normal_at(const PreparedTriangle& triangle, Vec3 p, double cell) const;
 
   Bvh tree_;
   std::optional<Inside> inside_;  // none for two-sided fields

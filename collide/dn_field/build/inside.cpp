@@ -56,12 +56,15 @@ void Inside::count_crossings(std::uint32_t triangle, int k, std::span<std::int32
   if (normal.x == 0) return;
   const int nx = grid_.n[0];
   const auto [low, high] = std::minmax({a.y, b.y, c.y});
+  const auto [left, right] = std::minmax({a.x, b.x, c.x});
   const Range js = voxels_between(low, high, grid_.origin.y, grid_.cell, grid_.n[1]);
   for (int j = js.first; j <= js.last; ++j) {
     const Vec3 p = grid_.centre(0, j, k);
     const int s = side(surface_, ia, ib, p.y, p.z);
     if (side(surface_, ib, ic, p.y, p.z) != s || side(surface_, ic, ia, p.y, p.z) != s) continue;
-    const double x = a.x - (normal.y * (p.y - a.y) + normal.z * (p.z - a.z)) / normal.x;
+    // Within the triangle, also where its plane nearly holds the x axis.
+    const double x =
+        std::clamp(a.x - (normal.y * (p.y - a.y) + normal.z * (p.z - a.z)) / normal.x, left, right);
     const double voxel = std::clamp(std::ceil((x - grid_.origin.x) / grid_.cell), 0.0, 1.0 * nx);
     change[static_cast<std::size_t>(j) * (static_cast<std::size_t>(nx) + 1) +
            static_cast<std::size_t>(voxel)] -= s;

@@ -161,9 +161,11 @@ bool Compressor::fits(std::array<int, 3> low, int s, std::uint32_t& entry) {
   const Vec3 made_normal = to_vec3(made.normal);
   for (const Voxel& v : voxels_) {
     const auto d = static_cast<double>(distance_to(made, v.x, v.y, v.z, thickness_));
-    off_.distance = std::max(off_.distance, std::abs(d - v.distance));
+    const double off = std::abs(d - v.distance);
+    if (!(off <= bound_.distance)) return false;  // also NaN
+    off_.distance = std::max(off_.distance, off);
     if (v.normal != Vec3{}) off_.angle = std::max(off_.angle, angle_between(made_normal, v.normal));
-    if (!(off_.distance <= bound_.distance) || !(off_.angle <= bound_.angle)) return false;
+    if (!(off_.angle <= bound_.angle)) return false;
   }
   return true;
 }

@@ -156,6 +156,9 @@ class FileReader {
 void save_field(const Field& field, const std::string& path) {
   if (field.planes != nullptr)
     fail(ErrorCode::bad_argument, path, ": compressed fields are not saved; save the flat one");
+  if (std::isinf(field.thickness))
+    fail(ErrorCode::bad_argument, path, ": a field of thickness ", field.thickness,
+         " is not saved; set the thickness that it holds for");
   Head head{magic, version, flat, 0, 0};
   each_piece(field, [&](std::span<const std::byte> piece) { head.body_bytes += piece.size(); });
   Checksum checksum;

@@ -159,8 +159,9 @@ bool is_closed(const Surface& surface) {
 }
 
 Surface welded(const Surface& surface) {
-  std::vector<std::uint32_t> order(surface.vertices.size()), merged(surface.vertices.size());
-  std::iota(order.begin(), order.end(), 0U);
+  // Of the vertices that triangles use: others may be NaN.
+  std::vector<std::uint32_t> order, merged(surface.vertices.size());
+  for (const auto& t : surface.triangles) order.insert(order.end(), t.begin(), t.end());
   const auto key = [&](std::uint32_t v) {
     const Vec3 p = surface.vertices[v];
     return std::tuple(p.x, p.y, p.z, v);

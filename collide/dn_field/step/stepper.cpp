@@ -82,6 +82,11 @@ void validate(const Rules& rules, std::span<const Object> objects) {
     if (compressed && rules.look_up == LookUp::trilinear)
       fail(ErrorCode::bad_argument, "object ", i,
            " has a compressed field, which has no trilinear look-up; take nearest or tangent");
+    if (rules.look_up == LookUp::trilinear && std::ranges::min(field.grid.n) < 2)
+      fail(
+          ErrorCode::bad_argument, "object ", i,
+          " has a field of one voxel on an axis, between which the trilinear look-up cannot blend; "
+          "take nearest or tangent");
     if (field.grid.size() >= std::size_t{1} << 31U)
       fail(ErrorCode::bad_argument, "object ", i, " has ", field.grid.size(),
            " voxels, above 2^31; lower its resolution");

@@ -135,6 +135,22 @@ void offer(PointBlock& block, const Layers& layers, const PreparedTriangle& cand
 
 }  // namespace
 
+Vec3 Bvh::nearest_normal(Vec3 p, double limit2) const {
+  Vec3 best;
+  double bound = limit2;
+  tree_.descend_near([&](const Bounds& box) { return box.distance2(p); }, bound,
+                     [&](const Node& leaf) {
+                       Tree::each_place(leaf, [&](std::uint32_t i) {
+                         const PreparedTriangle& triangle = prepared_[i];
+                         const double distance2 = dn::distance2(triangle, p.x, p.y, p.z);
+                         if (triangle.normal == Vec3{} || distance2 > bound) return;
+                         bound = distance2;
+                         best = triangle.normal;
+                       });
+                     });
+  return best;
+}
+
 void Bvh::closest(PointBlock& block) const {
   Bounds box;
   for (std::size_t l = 0; l < PointBlock::size; ++l)

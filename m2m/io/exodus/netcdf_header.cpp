@@ -29,7 +29,7 @@ class HeaderReader {
     attributes(true);
     variables();
     records_inside();
-    return {std::move(dimensions_), std::move(variables_)};
+    return {std::move(dimensions_), std::move(variables_), n_records_};
   }
 
  private:

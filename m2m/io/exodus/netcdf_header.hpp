@@ -24,6 +24,7 @@ struct NetcdfVariable {
 struct NetcdfHeader {
   std::vector<NetcdfDimension> dimensions{};
   std::vector<NetcdfVariable> variables{};
+  std::uint64_t n_records = 0;
 };
 
 /// Throws Error (bad_file) if the file is truncated or its header is inconsistent.

@@ -142,8 +142,13 @@ class VtuFields : public FieldReader {
  public:
   VtuFields(const std::string& path, std::string_view bytes) : path_(path), file_(path, bytes) {
     times_ = {file_.time()};
-    for (const VtuArray& array : file_.pieces()[0].point_data) list(array, FieldPlace::vertices);
-    for (const VtuArray& array : file_.pieces()[0].cell_data) list(array, FieldPlace::tets);
+    // Empty pieces need not have the arrays.
+    const auto& pieces = file_.pieces();
+    const auto full = std::ranges::find_if(
+        pieces, [](const VtuPiece& piece) { return piece.n_points != 0 && piece.n_cells != 0; });
+    const VtuPiece& first = full != pieces.end() ? *full : pieces[0];
+    for (const VtuArray& array : first.point_data) list(array, FieldPlace::vertices);
+    for (const VtuArray& array : first.cell_data) list(array, FieldPlace::tets);
   }
 
   [[nodiscard]] std::vector<double> read(const TetMesh& mesh, std::size_t field,

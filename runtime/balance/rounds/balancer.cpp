@@ -89,7 +89,8 @@ void Balancer::attach(Collection& array) {
   if (plan_.when == BalanceWhen::periodic)
     meter.add_alarm(meter.ticks(1e-9 * static_cast<double>(plan_.period_ns)), this,
                     [this] { alarm(); });
-  contribute(sum, array.n_away(),
+  // Only the barrier has to know which elements are under way.
+  contribute(sum, plan_.passes ? 0 : array.n_away(),
              group()[plan_.coordinator].target<&Balancer::attached_everywhere>());
 }
 
@@ -208,10 +209,13 @@ void Balancer::pass(Element& element) {
 }
 
 Task Balancer::reached(std::uint64_t /*n_elements*/) {
-  const std::uint32_t barrier = barriers_++;
-  if (array_ended_) co_return;
-  co_await phase_ends(Others::balanced);
-  group().broadcast<&Balancer::resume>(barrier);
+  // The elements of a round may all have ended while it runs, and others reach the next barrier.
+  if (++n_reached_ > 1) co_return;
+  for (; n_reached_ != 0; --n_reached_) {
+    if (array_ended_) co_return;
+    co_await phase_ends(Others::balanced);
+    group().broadcast<&Balancer::resume>(barriers_++);
+  }
 }
 
 Task Balancer::attached() {
@@ -227,8 +231,7 @@ Task Balancer::begin_phase() {
   running_ = true;
   co_await attached();
   co_await forget_all();
-  phase_began_ = current_pe().now();
-  running_ = false;
+  round_is_over();
 }
 
 Task Balancer::forget_all() {

@@ -148,7 +148,8 @@ class Balancer final : public Group<Balancer>, private ElementWatcher {
 
   // Only on the coordinator.
   std::unique_ptr<Coordinator> coordinator_;
-  std::uint32_t barriers_ = 0;
+  std::uint32_t barriers_ = 0;   // rounds at barriers that are over
+  std::uint32_t n_reached_ = 0;  // barriers reached whose rounds are not over
   std::uint64_t n_rounds_ = 0;
   std::int64_t n_under_way_ = 0;           // elements that left a PE before balancing started there
   bool attached_ = false;                  // all PEs are attached

@@ -97,6 +97,24 @@ TEST_CASE("normals of a sphere are radial and of unit length", "[dn_field]") {
         0.06);  // half a facet's opening angle is 0.025, times 1/sqrt(2) … near a vertex twice that
 }
 
+TEST_CASE("beside degenerate triangles voxels of the surface have the normals of the others",
+          "[dn_field]") {
+  const Grid grid{{-1.5, -1.5, -1.5}, 0.25, {13, 13, 13}};  // centres on the box and on its edges
+  const Surface box = make_box({1, 1, 1});
+  const Field plain = build_field(box, grid);
+  for (const std::size_t place : {std::size_t{0}, box.triangles.size()}) {
+    Surface surface = box;
+    const auto first = static_cast<std::uint32_t>(surface.vertices.size());
+    for (const double y : {-0.5, 0.0, 0.5}) surface.vertices.push_back({1, y, 0});
+    surface.triangles.insert(surface.triangles.begin() + static_cast<std::ptrdiff_t>(place),
+                             {first, first + 1, first + 2});
+    const Field field = build_field(surface, grid);
+    for (std::size_t at = 0; at < grid.size(); ++at)
+      CHECK((field.normal[at] == no_normal) == (plain.normal[at] == no_normal));
+    CHECK(dot(decoded(field.normal[grid.index(10, 6, 6)]), {1, 0, 0}) > 0.999);
+  }
+}
+
 TEST_CASE("an encoded normal is met to 6.6e-5 rad", "[dn_field]") {
   std::mt19937 random(3);
   std::normal_distribution<double> gauss;
