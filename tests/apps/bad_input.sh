@@ -65,6 +65,7 @@ refuses --nonsense "$bin/hello" --nonsense
 refuses "more than once" "${transfer[@]}" kuhn:2 kuhn:2 --policy keep --policy nearest
 refuses SOURCE "${transfer[@]}"
 refuses "no --pairs" "${transfer[@]}" kuhn:2 kuhn:2 kuhn:3
+refuses "--repeat 3 does not work with --pairs that write a mesh after it gave values" "${transfer[@]}" kuhn:2 kuhn:3 --pairs A:B,B:A --repeat 3
 refuses "'A:D' is no pair" "${transfer[@]}" kuhn:2 kuhn:2 kuhn:3 --pairs A:B,A:D
 refuses "--steps 2 does not work with fields and weights of files" "${transfer[@]}" kuhn:2 kuhn:2 --steps 2 --weights "$scratch/w.nc"
 "$bin/m2m_transfer" kuhn:2 kuhn:2 --weights "$scratch/w.nc" >"$scratch/out" || fail "no weights are written"

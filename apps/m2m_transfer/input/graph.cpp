@@ -106,4 +106,11 @@ bool needs_values(std::size_t mesh, const std::vector<Pair>& pairs) {
   return false;
 }
 
+bool is_written_after_read(const std::vector<Pair>& pairs) {
+  for (std::size_t i = 0; i < pairs.size(); ++i)
+    for (std::size_t j = i + 1; j < pairs.size(); ++j)
+      if (pairs[j].target == pairs[i].source) return true;
+  return false;
+}
+
 }  // namespace m2m_transfer

@@ -42,5 +42,8 @@ struct Pair {
                                          std::size_t n_meshes, const std::vector<Pair>& pairs);
 /// True if the first pair that uses the mesh reads it: it needs values before the first step.
 [[nodiscard]] bool needs_values(std::size_t mesh, const std::vector<Pair>& pairs);
+/// True if a pair writes a mesh that one before it reads: the next run of the pairs begins with
+/// other values.
+[[nodiscard]] bool is_written_after_read(const std::vector<Pair>& pairs);
 
 }  // namespace m2m_transfer

@@ -77,14 +77,6 @@ Formula formula_of(const std::string& name, const Aabb& domain, const std::strin
   }
 }
 
-/// If a source is written after it was read, the next run of the pairs begins with other values.
-bool changes_with_repeats(const std::vector<Pair>& pairs) {
-  for (std::size_t i = 0; i < pairs.size(); ++i)
-    for (std::size_t j = i + 1; j < pairs.size(); ++j)
-      if (pairs[j].target == pairs[i].source) return true;
-  return false;
-}
-
 /// The first source is surveyed before the others: the formulas depend on its bounds. It is sampled
 /// when it is placed.
 Task read_meshes(const Request& request, Problem& problem) {
@@ -153,7 +145,7 @@ Task load(Request request, Problem* out) {
   std::vector<std::string> names{request.source, request.target};
   names.insert(names.end(), request.more.begin(), request.more.end());
   problem.pairs = parse_pairs(request.pairs, names);
-  if (request.repeat > 1 && changes_with_repeats(problem.pairs))
+  if (request.repeat > 1 && is_written_after_read(problem.pairs))
     fail(ErrorCode::bad_argument, "--repeat ", request.repeat,
          " does not work with --pairs that write a mesh after it gave values; give --steps");
   if (names.size() > 2 && request.pairs.empty())

@@ -156,17 +156,15 @@ void bounces(Rows& rows) {
     Rules rules = impact(1, Sweep::off);
     rules.gravity = Gravity{{0, 0, -1}};
     Particle now{{0, 0, 0.5}, {}};
-    double most = 0, low = -HUGE_VAL;  // −the least
+    double gain = -1, loss = -HUGE_VAL;
     for (int i = 0; i < 2000; ++i) {
       now = flown(rules, step, 1, {&object, 1}, now);
       const double energy = now.position.z + 0.5 * dot(now.velocity, now.velocity);
-      worsen(most, energy), worsen(low, -energy);
+      worsen(gain, energy / 0.5 - 1), worsen(loss, 1 - energy / 0.5);
     }
-    rows.add("bounces, restitution 1: gain", "dt √(g/h)", step * std::sqrt(2.0), most / 0.5 - 1,
-             1e-6);
+    rows.add("bounces, restitution 1: gain", "dt √(g/h)", step * std::sqrt(2.0), gain, 1e-6);
     if (step < 0.05)
-      rows.add("bounces, restitution 1: loss", "dt √(g/h)", step * std::sqrt(2.0), 1 + low / 0.5,
-               1e-6);
+      rows.add("bounces, restitution 1: loss", "dt √(g/h)", step * std::sqrt(2.0), loss, 1e-6);
     rules.impact->restitution = 0;
     now =
         flown(rules, step, static_cast<int>(std::ceil(3 / step)), {&object, 1}, {{0, 0, 0.5}, {}});

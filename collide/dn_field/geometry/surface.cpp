@@ -7,7 +7,6 @@
 #include "runtime/core/number.hpp"
 
 #include <algorithm>
-#include <numeric>
 #include <ranges>
 #include <string_view>
 #include <tuple>

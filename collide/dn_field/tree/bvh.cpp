@@ -68,19 +68,41 @@ void Bvh::summarise() {
   }
 }
 
+namespace {
+
+/// Calls visit(place) for the triangles that may be within sqrt(`bound`) of p; it may lower the
+/// bound.
+template <class Tree, class Visit>
+void visit_near(const Tree& tree, Vec3 p, const double& bound, const Visit& visit) {
+  tree.descend_near([&](const Bounds& box) { return box.distance2(p); }, bound,
+                    [&](const typename Tree::Node& leaf) { Tree::each_place(leaf, visit); });
+}
+
+}  // namespace
+
 ClosestPoint Bvh::closest(Vec3 p, double limit2) const {
   ClosestPoint best;
   double bound = limit2;
-  tree_.descend_near([&](const Bounds& box) { return box.distance2(p); }, bound,
-                     [&](const Node& leaf) {
-                       Tree::each_place(leaf, [&](std::uint32_t i) {
-                         const Vec3 offset = offset_from(prepared_[i], p);
-                         const double distance2 = dot(offset, offset);
-                         if (distance2 > bound) return;
-                         bound = distance2;
-                         best = {distance2, p - offset, tree_.object(i)};
-                       });
-                     });
+  visit_near(tree_, p, bound, [&](std::uint32_t i) {
+    const Vec3 offset = offset_from(prepared_[i], p);
+    const double distance2 = dot(offset, offset);
+    if (distance2 > bound) return;
+    bound = distance2;
+    best = {distance2, p - offset, tree_.object(i)};
+  });
+  return best;
+}
+
+Vec3 Bvh::nearest_normal(Vec3 p, double limit2) const {
+  Vec3 best;
+  double bound = limit2;
+  visit_near(tree_, p, bound, [&](std::uint32_t i) {
+    const PreparedTriangle& triangle = prepared_[i];
+    const double distance2 = dn::distance2(triangle, p.x, p.y, p.z);
+    if (triangle.normal == Vec3{} || distance2 > bound) return;
+    bound = distance2;
+    best = triangle.normal;
+  });
   return best;
 }
 
@@ -134,22 +156,6 @@ void offer(PointBlock& block, const Layers& layers, const PreparedTriangle& cand
 }
 
 }  // namespace
-
-Vec3 Bvh::nearest_normal(Vec3 p, double limit2) const {
-  Vec3 best;
-  double bound = limit2;
-  tree_.descend_near([&](const Bounds& box) { return box.distance2(p); }, bound,
-                     [&](const Node& leaf) {
-                       Tree::each_place(leaf, [&](std::uint32_t i) {
-                         const PreparedTriangle& triangle = prepared_[i];
-                         const double distance2 = dn::distance2(triangle, p.x, p.y, p.z);
-                         if (triangle.normal == Vec3{} || distance2 > bound) return;
-                         bound = distance2;
-                         best = triangle.normal;
-                       });
-                     });
-  return best;
-}
 
 void Bvh::closest(PointBlock& block) const {
   Bounds box;
