@@ -146,6 +146,14 @@ bool CommandLine::is_given(const std::string& name) const {
   return option != nullptr && option->count() != 0;
 }
 
+void CommandLine::refuse_without(const std::string& what,
+                                 std::initializer_list<const char*> names) const {
+  for (const char* name : names)
+    if (is_given(name))
+      tess::fail(tess::ErrorCode::bad_argument, name, ": needs ", what,
+                 "; give one, or leave it out");
+}
+
 std::string CommandLine::value(const std::string& name) const {
   CLI::Option* const option = app_->get_option(name);
   if (option->get_items_expected_max() == 0) return is_given(name) ? "yes" : "no";  // a flag

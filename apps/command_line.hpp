@@ -6,6 +6,7 @@
 #include "runtime/run.hpp"
 
 #include <cstdint>
+#include <initializer_list>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -68,6 +69,8 @@ class CommandLine {
 
   /// Known once the line is parsed. False for a name that is no option.
   [[nodiscard]] bool is_given(const std::string& name) const;
+  /// Throws tess::Error (bad_argument) if one of the options is given, since it needs `what`.
+  void refuse_without(const std::string& what, std::initializer_list<const char*> names) const;
   /// The value of an option as text, whether it is given or the default: equal for equal values.
   [[nodiscard]] std::string value(const std::string& name) const;
 

@@ -64,14 +64,16 @@ namespace tess::m2m {
 struct CouplingOptions {
   Point voxel_origin{0, 0, 0};
   Point voxel_size{0, 0, 0};  ///< zero: chosen
-  /// For target points outside the source. With kind nearest, Keep is Nearest.
+  /// For target points outside the source: Keep or UseValue with conservative kinds. With kind
+  /// nearest, Keep is Nearest.
   OutsidePolicy policy = Keep{};
   TransferKind kind = TransferKind::linear;
   /// A point outside that is at most so far from a tetrahedron, in units of the mesh, snaps to the
   /// nearest one. Its value is that of the nearest point there. Kinds that are not conservative.
   double tolerance = 0;
   /// Keeps values within those of the vertices of the donor. It matters for points that snap within
-  /// rounding, whose values extrapolate, and for second_order, which then is `limited`.
+  /// rounding, whose values extrapolate, and for second_order, which then is `limited`. Kinds that are not
+  /// conservative.
   bool clamp = false;
   /// What the values belong to. Sources: anything for linear and conservative kinds, nodes for the
   /// others. Targets: nodes, or cells for conservative kinds.

@@ -31,6 +31,13 @@ ErrorNorms norms_of(const SquareSums& sums, double plain, const LargestError& wo
   norms.rms = std::sqrt(plain / static_cast<double>(n_vertices));
   norms.linf = worst.error;
   norms.worst = worst.vertex;
+  // Squares, and their products with volumes, that leave the range of double say nothing.
+  constexpr double least = 1e-280;
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const bool lost = norms.l2 == 0 && worst.error > 0;
+  if (lost || std::isinf(norms.l2) || std::isinf(reference) || (reference > 0 && reference < least))
+    norms.l2 = norms.l2_relative = nan;
+  if ((norms.rms == 0 && worst.error > 0) || std::isinf(norms.rms)) norms.rms = nan;
   return norms;
 }
 

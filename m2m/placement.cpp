@@ -5,6 +5,7 @@
 #include "m2m/read_mesh.hpp"
 #include "m2m/workers/placer.hpp"
 #include "runtime/core/error.hpp"
+#include "runtime/when.hpp"
 
 #include <array>
 #include <cmath>
@@ -47,7 +48,7 @@ Task read_and_measure(GroupProxy<Placer> placers, PlacerSetup setup, MeshCensus*
     refused = std::current_exception();
   }
   if (refused) {
-    for (Task& task : corners) co_await task;
+    co_await when_all(std::move(corners));
     std::rethrow_exception(refused);
   }
 
@@ -76,7 +77,7 @@ Task lead(GroupProxy<Placer> placers, PlacerSetup setup, MeshCensus* census) {
   }
 
   co_await step<&Placer::send_tets>(placers, cut);
-  for (Task& task : corners) co_await task;
+  co_await when_all(std::move(corners));
   Future<PlacerReport> finished;
   co_await step<&Placer::answer_points>(placers, finished.callback());
   if (setup.halo_layers > 0) {
@@ -116,7 +117,7 @@ Task survey_ranges(PlacerSetup setup, const TetMesh* whole, MeshSurvey* out) {
     std::vector<Task> corners;
     Measured measured;
     co_await read_and_measure(placers, setup, &out->census, corners, &measured);
-    for (Task& task : corners) co_await task;
+    co_await when_all(std::move(corners));
     Future<SurveyReport> counted;
     placers.broadcast<&Placer::count_extent>(counted.callback());
     const SurveyReport report = co_await counted;

@@ -12,7 +12,8 @@
 // An ask is a message with the number of a place on the asking PE; the reply is a message to that
 // place. The call is sent when ask() is called, so several may be under way at once: see when.hpp.
 // An Ask that is destroyed before its reply is there is cancelled: the function still runs, and its
-// reply is dropped and counted (statistics().late_replies).
+// reply is dropped and counted (statistics().late_replies). The call itself is not withdrawn: if the
+// element never comes to exist, the end of the run reports the message that waits for it.
 #pragma once
 
 #include "runtime/callback.hpp"
@@ -74,6 +75,7 @@ class AskBase {
   // For when_all and when_any.
   void wait(Waiter& waiter);
   void withdraw() { waiting_ = nullptr; }
+  [[nodiscard]] bool failed() const { return failure_.has_value(); }
   /// "the reply of Cell[5].f"
   [[nodiscard]] virtual WaitReason waits_for() const = 0;
 

@@ -10,6 +10,7 @@
 
 #include "runtime/task.hpp"
 
+#include <exception>
 #include <utility>
 
 namespace tess {
@@ -26,6 +27,7 @@ class [[nodiscard]] EpochAwait {
     suspend(task, [this] { return waits_for(); });
     begin([task] { resume_later(task); });
   }
+  [[nodiscard]] bool failed() const { return error_ != nullptr; }
   void await_resume() const {
     if (error_) std::rethrow_exception(error_);
   }

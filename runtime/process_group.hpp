@@ -179,11 +179,8 @@ void create_shared_arrives(Pe& pe, CreateShared<Part, Args...>&& m) {
   using Shared = typename Part::Shared;
   const SameProcess<Shared> shared{std::apply(
       [&pe](auto&... arg) {
-        try {
-          return std::make_shared<Shared>(std::in_place, std::move(arg)...);
-        } catch (...) {
-          pe.rethrow_kept();
-        }
+        return call_user(
+            [&] { return std::make_shared<Shared>(std::in_place, std::move(arg)...); });
       },
       m.args)};
   using Create = CreateArray<Part, SameProcess<Shared>>;

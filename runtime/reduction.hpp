@@ -47,6 +47,14 @@ T elementwise(T a, const T& b, const Op& op) {
     return op(a, b);
   }
 }
+template <class T>
+bool is_nan(const T& x) {
+  if constexpr (std::is_floating_point_v<T>) {
+    return x != x;
+  } else {
+    return false;
+  }
+}
 }  // namespace detail
 
 struct Sum {
@@ -57,18 +65,22 @@ struct Sum {
     });
   }
 };
+/// NaN if a value is NaN.
 struct Min {
   template <class T>
   T operator()(T a, const T& b) const {
-    return detail::elementwise(std::move(a), b,
-                               [](const auto& x, const auto& y) { return y < x ? y : x; });
+    return detail::elementwise(std::move(a), b, [](const auto& x, const auto& y) {
+      return detail::is_nan(y) || y < x ? y : x;
+    });
   }
 };
+/// NaN if a value is NaN.
 struct Max {
   template <class T>
   T operator()(T a, const T& b) const {
-    return detail::elementwise(std::move(a), b,
-                               [](const auto& x, const auto& y) { return x < y ? y : x; });
+    return detail::elementwise(std::move(a), b, [](const auto& x, const auto& y) {
+      return detail::is_nan(y) || x < y ? y : x;
+    });
   }
 };
 struct LogicalAnd {

@@ -124,7 +124,7 @@ constexpr std::uint64_t refused = 0x7265667573656421U;
 void refuse(Setup& setup, int& argc, char** argv, const Error& error) {
   if (!setup.machine && is_in_job()) {
     try {
-      setup.machine = make_mpi_machine(argc, argv, {});
+      setup.machine = make_mpi_machine(argc, argv, {.pes_per_process = 0, .refuses = true});
     } catch (const Error&) {  // then each process prints its own
     }
   }
@@ -251,7 +251,6 @@ Setup take_options(int& argc, char** argv) {
 int run_on(Setup& setup, std::function<void()> main) {
   refuse_inside_run();
   TESS_CHECK(!setup.started, "run() with a Setup that has run: make one for each run");
-  setup.started = true;
   detail::Runtime runtime(*setup.machine, setup.options,
                           {&detail::element_text, &detail::element_key, &detail::element_state},
                           std::move(main));
@@ -259,6 +258,8 @@ int run_on(Setup& setup, std::function<void()> main) {
   runtime.serve(service);
   std::optional<detail::Monitor> monitor;
   if (setup.options.monitor) monitor.emplace(runtime, *setup.options.monitor);
+  runtime.prepare();
+  setup.started = true;  // before it, a process that throws tells the others: refuse()
   return runtime.run();
 }
 
@@ -300,6 +301,7 @@ bool asks_for_help(int argc, char** argv) {
 }  // namespace detail
 
 bool charge(std::chrono::nanoseconds work) {
+  TESS_CHECK(work.count() >= 0, "charge(", work.count(), "ns): work takes time");
   Pe& pe = current_pe();
   pe.machine().charge(pe.id(), work);
   return pe.machine().virtual_time();

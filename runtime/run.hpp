@@ -41,7 +41,7 @@ namespace tess {
 struct Setup {
   std::unique_ptr<Machine> machine;
   RuntimeOptions options;
-  bool started = false;  ///< run_on() was called
+  bool started = false;  ///< the run has begun
 };
 
 /// Removes the runtime's options from argc and argv, and makes the machine that they name. Throws

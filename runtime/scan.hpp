@@ -95,7 +95,7 @@ struct ScanTypes {
 /// True if `b` follows `a` and no index can stand between them.
 template <class Key>
 [[nodiscard]] bool adjoin(const Key& a, const Key& b) {
-  if constexpr (Coordinates<Key>) {
+  if constexpr (is_one_of<Key, Index1, Index2, Index3, Index4, Index5, Index6>) {
     const auto from = std::bit_cast<std::array<std::int32_t, sizeof(Key) / 4>>(a);
     const auto to = std::bit_cast<std::array<std::int32_t, sizeof(Key) / 4>>(b);
     for (std::size_t axis = 0; axis + 1 < from.size(); ++axis)

@@ -30,18 +30,20 @@ class Span {
  public:
   explicit Span(std::string_view name) : pe_(current_pe()) {
     if (pe_.trace() == nullptr) return;
+    traced_ = true;
     name_ = name;
     began_ = pe_.meter()->now();
   }
   Span(const Span&) = delete;
   Span& operator=(const Span&) = delete;
   ~Span() {
-    if (began_ != 0) pe_.trace()->event(std::move(name_), began_, pe_.meter()->now());
+    if (traced_) pe_.trace()->event(std::move(name_), began_, pe_.meter()->now());
   }
 
  private:
   Pe& pe_;
   std::string name_;
+  bool traced_ = false;
   std::uint64_t began_ = 0;
 };
 

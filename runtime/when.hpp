@@ -22,6 +22,7 @@
 
 #include <concepts>
 #include <cstddef>
+#include <exception>
 #include <memory>
 #include <optional>
 #include <string>
@@ -59,7 +60,10 @@ class [[nodiscard]] Sleep {
   void await_resume() const {}
 
   // For when_all and when_any.
-  void wait(detail::Waiter& waiter) { state_->waiting = &waiter; }
+  void wait(detail::Waiter& waiter) {
+    TESS_CHECK(state_->waiting == nullptr, "two coroutines await one sleep()");
+    state_->waiting = &waiter;
+  }
   void withdraw() { state_->waiting = nullptr; }
   [[nodiscard]] std::string waits_for() const { return "a time"; }
 
@@ -109,6 +113,7 @@ class JoinedEpoch {
   JoinedEpoch(EpochAwait<Body>&& epoch) : epoch_(std::move(epoch)) {}
 
   [[nodiscard]] bool await_ready() const { return state_ && state_->done; }
+  [[nodiscard]] bool failed() const { return epoch_.failed(); }
   void await_resume() const { epoch_.await_resume(); }
   void wait(Waiter& waiter) {
     state_ = std::make_shared<State>(State{&waiter});
@@ -130,6 +135,16 @@ class JoinedEpoch {
   EpochAwait<Body> epoch_;
   std::shared_ptr<State> state_;  // null until it begins
 };
+/// An awaitable that may give an error instead of a result.
+template <class A>
+bool has_failed(const A& part) {
+  if constexpr (requires { part.failed(); }) {
+    return part.failed();
+  } else {
+    return false;
+  }
+}
+
 /// What when_all and when_any keep of an argument.
 template <class A>
 struct JoinAs : std::type_identity<A> {};
@@ -230,7 +245,19 @@ class [[nodiscard]] WhenAll {
       }
     });
   }
-  typename P::All await_resume() { return parts_.all(); }
+  typename P::All await_resume() {
+    bool failed = false;
+    parts_.each([&failed](const auto& part) { failed = failed || has_failed(part); });
+    if (failed) {
+      parts_.each([](auto& part) {
+        if (!has_failed(part)) part.withdraw();
+      });
+      parts_.each([](auto& part) {
+        if (has_failed(part)) (void)part.await_resume();  // throws
+      });
+    }
+    return parts_.all();
+  }
 
  private:
   P parts_;
@@ -290,16 +317,18 @@ class [[nodiscard]] WhenAny {
 
 template <class... A>
 consteval bool check_joined() {
-  static_assert(
-      (Joinable<typename JoinAs<A>::type> && ...),
-      "when_all and when_any take asks, futures, epochs, mailbox.take(…) and tess::sleep(…)");
+  static_assert((Joinable<typename JoinAs<A>::type> && ...),
+                "when_all and when_any take asks, futures, epochs, mailbox.take(…) and "
+                "tess::sleep(…); when_all "
+                "also a vector of tasks");
   return true;
 }
 
 }  // namespace detail
 
-/// When awaited, gives all results, as a tuple; NoValue for what has none. An error of any is
-/// thrown once all are there.
+/// When awaited, gives all results, as a tuple; NoValue for what has none. Once all are there, the
+/// first error is thrown, and the others stay where they are: a mailbox keeps its message, a future
+/// its result.
 template <class... A>
 [[nodiscard]] auto when_all(A&&... a) {
   static_assert(detail::check_joined<A...>());
@@ -310,6 +339,18 @@ template <class A>
 [[nodiscard]] auto when_all(std::vector<A>&& a) {
   static_assert(detail::check_joined<A>());
   return detail::WhenAll<detail::PartsOfVector<A>>(detail::PartsOfVector<A>(std::move(a)));
+}
+/// Awaits all tasks, also if one fails, and then throws the first error.
+inline Task when_all(std::vector<Task> tasks) {
+  std::exception_ptr error;
+  for (Task& task : tasks) {
+    try {
+      co_await task;
+    } catch (...) {
+      if (!error) error = std::current_exception();
+    }
+  }
+  if (error) std::rethrow_exception(error);
 }
 /// When awaited, gives the first result, as a variant whose index() says which one it is. If
 /// several are there, it is the first in the order of the arguments.

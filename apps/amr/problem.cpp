@@ -8,6 +8,10 @@
 
 namespace amr {
 
+namespace {
+constexpr double most_steps = 100'000'000;
+}  // namespace
+
 void Problem::complete() {
   using tess::ErrorCode;
   if (n_cells < 4 || n_cells % 2 != 0)
@@ -29,12 +33,21 @@ void Problem::complete() {
   if (fastest == 0)
     tess::fail(ErrorCode::bad_argument, "--velocity: one component must differ from 0");
   // Rounding must not add a step to a number of steps that is exact.
-  if (n_steps == 0)
-    n_steps = static_cast<std::int32_t>(
-        std::ceil(end * fastest / (cfl * spacing(most_level)) * (1 - 1e-12)));
-  else
+  if (n_steps == 0) {
+    const double n = std::ceil(end * fastest / (cfl * spacing(most_level)) * (1 - 1e-12));
+    if (!(n <= most_steps))
+      tess::fail(ErrorCode::bad_argument, "--time: ", end, " takes ", n, " steps, and at most ",
+                 most_steps, " are run: give at most ",
+                 most_steps * cfl * spacing(most_level) / fastest);
+    n_steps = static_cast<std::int32_t>(n);
+  } else
     end = n_steps * cfl * spacing(most_level) / fastest;
   dt = end / n_steps;
+  double mass = 1;
+  for (std::int32_t axis = 0; axis < 3; ++axis) mass *= mean(axis, 0, 1, 0);
+  if (!(mass < 7.9))  // 64 bits of quanta
+    tess::fail(ErrorCode::bad_argument, "--width: ", width, " gives u a mean of ", mass,
+               ", and it must be below 8: give a smaller one");
 }
 
 double Problem::mean(std::int32_t axis, double low, double h, double time) const {

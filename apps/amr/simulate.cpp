@@ -70,6 +70,7 @@ tess::Task simulate(Settings& settings, Outcome& outcome, std::function<void(std
   if (restarts) {
     co_await settings.checkpoints.restart(state, problem.n_steps);
     state.problem.n_steps = problem.n_steps;
+    state.problem.end = problem.n_steps * state.problem.dt;
     problem = state.problem;
   } else {
     state.blocks = tess::create<Block>(tess::sparse);

@@ -61,6 +61,10 @@ int run(tess::Setup& setup, int argc, char** argv, bool asked_for_pes) {
             "no INPUT");
   if (!line.parse(argc, argv, collide_scene::scenes_help() + tess::options_help())) return 0;
 
+  if (stability && options.inputs.empty())
+    line.refuse_without("an INPUT", {"--steps", "--move", "--self", "--triangles", "--open",
+                                     "--voxel-size", "--slack", "--repeat", "--seed", "--serial",
+                                     "--json", "--out", "--explain", "--study"});
   const bool on_processes = setup.machine->n_processes() > 1;
   if (options.serial && (asked_for_pes || on_processes))
     tess::fail(tess::ErrorCode::bad_argument,

@@ -1,6 +1,7 @@
 #include "apps/m2m_transfer/contradictions.hpp"
 
 #include "apps/command_line.hpp"
+#include "apps/m2m_transfer/study/study.hpp"
 #include "runtime/core/check.hpp"
 #include "runtime/core/error.hpp"
 
@@ -106,8 +107,8 @@ void refuse_contradictions(const DriverOptions& o, Mode mode) {
 plot::FileNames file_names(const DriverOptions& o, const std::string& trace) {
   plot::FileNames names;
   for (const std::string& mesh : o.request.more) names.reads("a mesh", mesh);
-  names.reads("SOURCE", o.request.source);
-  names.reads("TARGET", o.request.target);
+  for (const std::string& mesh : expand(o.request.source)) names.reads("SOURCE", mesh);
+  for (const std::string& mesh : expand(o.request.target)) names.reads("TARGET", mesh);
   names.reads("--from-weights", o.from_weights);
   for (const auto& [option, path] : {std::pair<const char*, std::string>{"--out", o.out},
                                      {"--picture", o.picture},

@@ -181,10 +181,12 @@ Task run_study(const DriverOptions& options, apps::Progress& progress, bool& fai
     reports.push_back(problem.reports.front());
   }
   progress.clear();
-  const Study study{std::move(reports), options.repeat.value_or(3)};
+  // A point that snaps by the tolerance has the value of another place.
+  const Study study{std::move(reports), options.repeat.value_or(3),
+                    *options.study == "kind" && options.request.tolerance == 0};
   print(table(study));
   std::vector<Check> rows;
-  if (*options.study == "kind") rows = checks(study);
+  if (study.is_checked) rows = checks(study);
   if (!rows.empty()) print(table(rows));
   print(write(study, folder));
   if (!options.json.empty()) plot::write_file(options.json, json(study));

@@ -436,8 +436,11 @@ std::string json(const FileFieldsReport& r) {
                   {"cells_boundary", r.cell_tally.counts[1]},
                   {"cells_snapped", r.cell_tally.counts[2]},
                   {"cells_outside", r.cell_tally.counts[3]}});
-  if (const Tally& tally = r.searched ? r.tally : r.cell_tally; tally.n_overcovered > 0)
-    whole.update({{"overcovered", tally.n_overcovered}, {"most_covered", tally.most_covered}});
+  if (r.tally.n_overcovered > 0)
+    whole.update({{"overcovered", r.tally.n_overcovered}, {"most_covered", r.tally.most_covered}});
+  if (r.cell_tally.n_overcovered > 0)
+    whole.update({{"cells_overcovered", r.cell_tally.n_overcovered},
+                  {"cells_most_covered", r.cell_tally.most_covered}});
   if (r.n_weights > 0) whole["weights"] = r.n_weights;
   whole["steps"] = nlohmann::ordered_json::array();
   for (const MovedStep& step : r.steps)

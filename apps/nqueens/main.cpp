@@ -40,6 +40,10 @@ std::vector<Problem> problems_of(const Options& options) {
   return all;
 }
 
+std::uint64_t expected_of(const Options& options, const Row& row) {
+  return options.expected.value_or(known_count(row.problem.n));
+}
+
 tess::Task measure(Options options) {
   apps::Progress progress(stderr);
   progress.phase("searching");
@@ -52,18 +56,19 @@ tess::Task measure(Options options) {
     for (std::int32_t k = 0; k < options.repeat; ++k) {
       Outcome outcome;
       if (options.checkpoints.are_used())
-        co_await search_in_parts(row.problem, options.checkpoints, outcome);
+        co_await search_in_parts(row.problem, options.grain, options.checkpoints, outcome);
       else
         co_await search(problem, outcome);
-      if (k == 0 || outcome.seconds < row.outcome.seconds) row.outcome = outcome;
+      const bool wrong = !fault({row.problem, outcome}, expected_of(options, row)).empty();
+      if (k == 0 || wrong || outcome.seconds < row.outcome.seconds) row.outcome = outcome;
+      if (wrong) break;  // it is not repeated away
     }
     rows.push_back(row);
     if (options.study)
       rows.back().efficiency = rows.front().outcome.seconds / (tess::n_pes() * row.outcome.seconds);
     progress.clear();
     tess::print_text(line(rows.back()));
-    const std::uint64_t expected = options.expected.value_or(known_count(row.problem.n));
-    if (const std::string why = fault(row, expected); !why.empty()) {
+    if (const std::string why = fault(row, expected_of(options, row)); !why.empty()) {
       apps::end_with("nqueens: wrong answer: " + why);
       co_return;
     }
@@ -99,11 +104,8 @@ int run(tess::Setup& setup, int argc, char** argv) {
                "--checkpoint and --restart: not for --study and --repeat");
   problem.prioritised = options.priority == "path";
   problem.form = options.form == "group" ? Form::group : Form::chares;
-  problem.grain = options.grain.value_or(std::max(problem.n - 4, 1));
-  if (problem.n - problem.grain > most_path_rows)
-    tess::fail(tess::ErrorCode::bad_argument, "--grain: ", problem.grain, " of ", problem.n,
-               " rows leaves more than ", most_path_rows, " for tasks: give at least ",
-               problem.n - most_path_rows);
+  problem.grain = options.grain.value_or(default_grain(problem.n));
+  if (!options.checkpoints.restarts()) check_grain(problem);  // else N is in the checkpoint
   if (options.study && (options.grain || problem.first))
     tess::fail(tess::ErrorCode::bad_argument,
                "--study tries all grains and counts: leave out --grain and --first");

@@ -14,13 +14,15 @@ struct State {
 
 }  // namespace
 
-tess::Task search_in_parts(Problem& problem, apps::Checkpoints& checkpoints, Outcome& outcome) {
+tess::Task search_in_parts(Problem& problem, std::optional<std::int32_t> grain,
+                           apps::Checkpoints& checkpoints, Outcome& outcome) {
   State state{problem.n, problem.first, 0, {}};
   std::int32_t n_parts = 0;
   if (checkpoints.restarts()) {
     co_await checkpoints.restart(state, n_parts);
-    problem.grain = std::max(state.n - (problem.n - problem.grain), 1);
     problem.n = state.n;
+    problem.grain = grain.value_or(default_grain(state.n));
+    check_grain(problem);
     problem.first = state.first;
   }
   std::uint64_t n_above = 0;

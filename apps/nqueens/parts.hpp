@@ -7,9 +7,14 @@
 #include "apps/checkpoints.hpp"
 #include "apps/nqueens/search.hpp"
 
+#include <cstdint>
+#include <optional>
+
 namespace nqueens {
 
-/// As search(). After a restart n and `first` of the problem are those of the checkpoint.
-tess::Task search_in_parts(Problem& problem, apps::Checkpoints& checkpoints, Outcome& outcome);
+/// As search(). After a restart n and `first` of the problem are those of the checkpoint, and a grain
+/// that is not given is the default for that n.
+tess::Task search_in_parts(Problem& problem, std::optional<std::int32_t> grain,
+                           apps::Checkpoints& checkpoints, Outcome& outcome);
 
 }  // namespace nqueens

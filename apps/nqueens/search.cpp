@@ -1,5 +1,6 @@
 #include "apps/nqueens/search.hpp"
 
+#include "runtime/core/error.hpp"
 #include "runtime/core/hash.hpp"
 #include "runtime/runtime.hpp"
 
@@ -116,6 +117,13 @@ void Searcher::search_serially(const Board& board) {
 }
 
 }  // namespace
+
+void check_grain(const Problem& problem) {
+  if (problem.n - problem.grain > most_path_rows)
+    tess::fail(tess::ErrorCode::bad_argument, "--grain: ", problem.grain, " of ", problem.n,
+               " rows leaves more than ", most_path_rows, " for tasks: give at least ",
+               problem.n - most_path_rows);
+}
 
 void Outcome::add(const Outcome& part) {
   count.n_solutions += part.count.n_solutions;

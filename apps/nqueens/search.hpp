@@ -14,6 +14,7 @@
 #include "apps/nqueens/board.hpp"
 #include "runtime/task.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -28,6 +29,12 @@ struct Problem {
   bool prioritised = true;  ///< boards on the left first: depth first; otherwise breadth first
   Form form = Form::group;
 };
+
+[[nodiscard]] inline std::int32_t default_grain(std::int32_t n) {
+  return std::max(n - 4, 1);
+}
+/// Throws tess::Error for a grain that leaves more rows than a path has.
+void check_grain(const Problem& problem);
 
 /// What is known at the end, on all PEs.
 struct Outcome {

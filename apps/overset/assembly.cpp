@@ -36,6 +36,7 @@ Aabb joint_box(const Problem& problem) {
 tess::ArrayProxy<Grid> place(const Problem& problem, std::size_t number) {
   const TetMesh& mesh = problem.meshes[number];
   const auto field = tess::m2m::make_formula(problem.field, joint_box(problem));
+  (void)tess::m2m::sample(mesh, problem.field, field);  // refuses values that are not finite
   const auto grids = tess::create<Grid>(tess::range(problem.n_parts));
   auto parts = tess::m2m::mesh_parts(mesh, problem.n_parts, tess::m2m::PartitionMethod::rcb,
                                      problem.options.fringe_layers);

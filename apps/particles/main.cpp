@@ -120,6 +120,9 @@ int run(tess::Setup& setup, int argc, char** argv) {
   names.writes("--json", options.json);
   names.writes("--trace", setup.options.trace);
   if (line.is_given("--balance")) options.run.balance = tess::parse_balance(balance);
+  if (stability && options.scene.empty())
+    line.refuse_without("a SCENE", {"--steps", "--json", "--out", "--explain", "--study",
+                                    "--resolutions", "--compressed", "--balance"});
   if (stability) {
     const auto rows = tess::dn::stability_report();
     if (setup.machine->process().value == 0) tess::print(tess::dn::text_of(rows));

@@ -161,7 +161,7 @@ int main(int argc, char** argv) {
     line.option("--json FILE", options.json, "write the result as JSON");
     options.checkpoints.add_options(line);
     if (!line.parse(argc, argv)) return 0;
-    options.checkpoints.check(line, {"--blocks", "--size"});
+    options.checkpoints.check(line, {"--blocks", "--size", "--log-steps"});
     plot::require_writable("--json", options.json);
     if (grid.n_blocks > grid.problem.size)
       tess::fail(tess::ErrorCode::bad_argument, "--blocks: ", grid.n_blocks,

@@ -86,8 +86,11 @@ Row Bench::row_of(std::optional<std::int64_t> iterations, double seconds) const 
     row.kernel += (k > 0 ? "+" : "") + name_of(graph.kernel.type);
     row.n_tasks += totals_[k].n_tasks;
     row.n_dependences += totals_[k].n_dependences;
-    // A kernel's time is linear in its iterations, so a random number of them counts as its mean.
-    kernels += static_cast<double>(totals_[k].n_tasks) *
+    // A kernel's time is linear in its iterations; where they are random, the drawn ones count.
+    const double asked =
+        static_cast<double>(totals_[k].n_tasks) * static_cast<double>(graph.kernel.iterations);
+    const double drawn = asked > 0 ? static_cast<double>(totals_[k].n_iterations) / asked : 1;
+    kernels += drawn * static_cast<double>(totals_[k].n_tasks) *
                kernel_seconds(graph, iterations.value_or(graph.kernel.iterations));
   }
   row.width = graphs_.front().width;
@@ -130,8 +133,7 @@ tess::Task Bench::measure_all(Result* result) {
     result->rows.push_back(row);
   }
   for (const tess::BalancerProxy& balancer : balancers_)
-    result->rounds.insert(result->rounds.end(), balancer.history().begin(),
-                          balancer.history().end());
+    result->rounds.push_back(balancer.history());
 }
 
 }  // namespace

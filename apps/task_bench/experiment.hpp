@@ -15,7 +15,7 @@ struct Result {
   std::vector<Graph> graphs;
   std::vector<Row> rows;
   std::optional<Metg> metg;
-  std::vector<tess::balance::Round> rounds;  ///< of all graphs, where a balancer ran
+  std::vector<std::vector<tess::balance::Round>> rounds;  ///< per graph, where a balancer ran
 };
 
 /// Runs all cases, on PE 0, and reports each through `tell`. Ends the run with exit code 1 if the

@@ -39,12 +39,12 @@ void print_run(const Result& result) {
       static_cast<double>(n_flops) / row.seconds, static_cast<double>(n_bytes) / row.seconds,
       row.pes, row.ranks, microseconds(row.seconds * row.pes / tasks),
       microseconds(row.grain_seconds), row.efficiency);
-  if (!result.rounds.empty()) {
+  for (const std::vector<tess::balance::Round>& rounds : result.rounds) {
+    if (rounds.empty()) continue;
     std::size_t n_moved = 0;
-    for (const tess::balance::Round& round : result.rounds) n_moved += round.n_moved;
+    for (const tess::balance::Round& round : rounds) n_moved += round.n_moved;
     text += fmt::format("Balance Rounds {}, {} columns moved, max/average {:.3f} -> {:.3f}\n",
-                        result.rounds.size(), n_moved, result.rounds.front().before,
-                        result.rounds.back().before);
+                        rounds.size(), n_moved, rounds.front().before, rounds.back().before);
   }
   tess::print_text(text);
 }

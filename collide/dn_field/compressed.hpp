@@ -1,4 +1,4 @@
-// A field in at most a fifth of the memory: two levels, blocks of 4³ to 16³ voxels, each divided
+// A field in a third to a twentieth of the memory: two levels, blocks of 4³ to 16³ voxels, each divided
 // into equal cells as coarse as the error bound allows (section 3.2).
 //
 //     block (i >> e, j >> e, k >> e)  ->  first entry << 3 | s; cells of 2^s voxels, s up to e

@@ -27,11 +27,17 @@ enum class Content : std::uint32_t { distance, distance_and_normal };
 
 struct Planes;
 
+/// The distance that a field stores where no surface is within its thickness: a little more, so that
+/// a rule that reaches as far as the field does not act there, in an object of any scale.
+[[nodiscard]] inline float cut_off(double thickness) {
+  return static_cast<float>(thickness * (1 + 0x1p-21));
+}
+
 struct Field {
   Grid grid;
   Method method = Method::exact;
   Sides sides = Sides::one;
-  double thickness = 0;               ///< |distance| is cut off here
+  double thickness = 0;               ///< |distance| is known up to here; beyond, it is cut_off()
   std::vector<float> distance;        ///< grid.size(); empty if compressed
   std::vector<std::uint32_t> normal;  ///< grid.size() codes of normal_code.hpp, or empty
 

@@ -31,21 +31,54 @@ inline void path_segments(std::size_t p, Vec3 from, std::span<const Waypoint> wa
   return frame;
 }
 
+/// The part of the segment on which the object's grid may be: within a ball around its origin.
+[[nodiscard]] inline LinePart part_near(const Object& object, double step,
+                                        const PathSegment& segment) {
+  const Bounds box = object.field->grid.box();
+  const Vec3 corner{std::max(std::abs(box.low.x), std::abs(box.high.x)),
+                    std::max(std::abs(box.low.y), std::abs(box.high.y)),
+                    std::max(std::abs(box.low.z), std::abs(box.high.z))};
+  const Frame first = frame_at(object.frame, step, segment.begin),
+              last = frame_at(object.frame, step, segment.end);
+  const double reach = norm(corner) * std::max(first.scale, last.scale);
+  const Vec3 from = segment.from - first.position, way = (segment.to - last.position) - from;
+  const double length = norm(way);
+  if (length == 0) return {0, 1};
+  const double middle = -dot(from, way) / length / length;
+  const double beside = norm(from + middle * way);
+  const double half = std::sqrt(std::max(0.0, reach * reach - beside * beside)) / length;
+  if (beside > reach) return {1, 0};
+  return {std::max(0.0, middle - half), std::min(1.0, middle + half)};
+}
+
+/// The turns by which a path that is straight in the world is cut where an object spins.
+inline constexpr double straight_turn = 0.05;
+
 /// Calls visit(from, to) in the object's coordinates for each piece of the segment, until a call
-/// returns true; returns whether one did. Seen from an object that spins the pieces are straight up
-/// to 3e-4 of the distance from its origin.
+/// returns true; returns whether one did. Seen from an object that spins or grows a piece is
+/// straight up to a quarter of a cell and 3e-4 of the distance from the object's origin; in at most
+/// a thousand pieces.
 template <class Visit>
-bool any_piece(const Frame& frame, double step, const PathSegment& segment, const Visit& visit) {
-  constexpr double straight_turn = 0.05, most = 1000;
+bool any_piece(const Object& object, double step, const PathSegment& segment, const Visit& visit) {
+  constexpr double most_bent = 0.25, most = 1000;
+  const Frame& frame = object.frame;
   if (!frame.is_moving()) return visit(frame.to_object(segment.from), frame.to_object(segment.to));
-  const double last = segment.end - segment.begin,
-               turns = norm(frame.angular_velocity) * step * last / straight_turn;
-  const int n = 1 + static_cast<int>(std::min(turns, most));
-  Vec3 from = frame_at(frame, step, segment.begin).to_object(segment.from);
+  const auto [enters, leaves] = part_near(object, step, segment);
+  if (!(enters <= leaves)) return false;
+  const double lasts = segment.end - segment.begin, near = leaves - enters;
+  const auto seen_at = [&](double part) {
+    return frame_at(frame, step, segment.begin + part * lasts)
+        .to_object(segment.from + part * (segment.to - segment.from));
+  };
+  const double way = norm(segment.to - segment.from - lasts * step * frame.velocity) * near;
+  const double turn = norm(frame.angular_velocity) * step * lasts * near;
+  const double growth = std::abs(frame.scale_rate) / frame.scale * step * lasts * near;
+  const double cell = frame.scale * object.field->grid.cell;
+  const double bends = std::sqrt((turn + growth) * way / (4 * most_bent * cell));
+  const int n = 1 + static_cast<int>(std::min(std::max(turn / straight_turn, bends), most));
+  Vec3 from = seen_at(enters);
   for (int i = 1; i <= n; ++i) {
-    const double part = static_cast<double>(i) / n;
-    const Vec3 to = frame_at(frame, step, segment.begin + part * last)
-                        .to_object(segment.from + part * (segment.to - segment.from));
+    const Vec3 to = seen_at(enters + near * (static_cast<double>(i) / n));
     if (visit(from, to)) return true;
     from = to;
   }

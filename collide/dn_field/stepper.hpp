@@ -5,7 +5,8 @@
 //
 // Limits: a voxel stores one surface. In a corner of two objects a particle may enter the further
 // one by half a cell, and where open surfaces meet it may pass the joint. Where a stiff spring
-// catches it from the side, a particle turns back the way it came instead of being reflected.
+// catches it from the side, a particle turns back the way it came instead of being reflected. An
+// open surface that turns by a radian a step may pass particles that a spring and its drag hold.
 #pragma once
 
 #include "collide/dn_field/frame.hpp"

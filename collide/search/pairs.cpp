@@ -251,7 +251,10 @@ void search_pairs(std::span<const Box<Real, D>> a, std::span<const Box<Real, D>>
   Plan<Real, D> plan(options, false, sink);
   const Box<Real, D> bounds_a = checked_bounds(a, " of the first set");
   const Box<Real, D> bounds_b = checked_bounds(b, " of the second set");
-  if (a.empty() || b.empty()) return;
+  if (a.empty() || b.empty()) {
+    if (options.statistics != nullptr) *options.statistics = {};
+    return;
+  }
   plan.run(a, all_entries(a.size()), b, all_entries(b.size()), false, merged(bounds_a, bounds_b));
 }
 

@@ -2,9 +2,11 @@
 
 #include "m2m/interpolate/locate.hpp"
 #include "m2m/search/cells.hpp"
+#include "runtime/core/check.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace tess::m2m {
 namespace {
@@ -183,8 +185,11 @@ std::size_t n_unknowns(const MeshView& mesh, Centring centring) {
 GlobalId id_of_unknown(const MeshView& mesh, Centring centring, VertexId unknown) {
   const auto u = static_cast<std::size_t>(unknown);
   if (centring == Centring::nodes) return mesh.point_ids[u];
-  return centring == Centring::cells ? mesh.tet_ids[u]
-                                     : 4 * mesh.tet_ids[u / 4] + static_cast<GlobalId>(u % 4);
+  if (centring == Centring::cells) return mesh.tet_ids[u];
+  const GlobalId tet = mesh.tet_ids[u / 4];
+  TESS_CHECK(tet <= std::numeric_limits<GlobalId>::max() / 4 - 1, "tet_ids has ", tet,
+             ": values at corners need ids below 2^61");
+  return 4 * tet + static_cast<GlobalId>(u % 4);
 }
 
 OverlapRows overlap_rows(const MeshView& source, Centring centring, const Cover& cover,

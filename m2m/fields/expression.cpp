@@ -177,9 +177,9 @@ double binary(Op op, double a, double b) {
     case Op::divide:
       return a / b;
     case Op::min:
-      return std::min(a, b);
+      return std::isnan(b) ? b : std::min(a, b);
     case Op::max:
-      return std::max(a, b);
+      return std::isnan(b) ? b : std::max(a, b);
     default:
       return std::pow(a, b);
   }

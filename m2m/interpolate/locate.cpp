@@ -16,6 +16,10 @@ constexpr double volume_bound = 6 * orientation_bound;
 /// error of each weight is below 1e-12.
 constexpr double flat_limit = 4 * volume_bound * 1e12;
 
+/// A point that snaps has weights of its own down to minus this. They are those of the nearest point
+/// of a tetrahedron that is nearly flat, whose heights are not much larger than the distance.
+constexpr double most_extrapolation = 1e-6;
+
 double largest_coordinate(const Point& p) {
   return std::max({std::abs(p[0]), std::abs(p[1]), std::abs(p[2])});
 }
@@ -35,7 +39,7 @@ double twice_area(const Point& a, const Point& b, const Point& c) {
   const double ux = b[0] - a[0], uy = b[1] - a[1], uz = b[2] - a[2];
   const double vx = c[0] - a[0], vy = c[1] - a[1], vz = c[2] - a[2];
   const double x = uy * vz - uz * vy, y = uz * vx - ux * vz, z = ux * vy - uy * vx;
-  return std::sqrt(x * x + y * y + z * z);
+  return std::hypot(x, y, z);
 }
 
 /// The distance from a face up to which a point outside snaps.
@@ -47,8 +51,11 @@ double tolerance(const std::array<Point, 4>& corners) {
 
 /// True if a point outside snaps: it must be near to the plane of every face that it is outside of,
 /// and lie in the padded box. (At a sharp edge both planes are near even far from the tetrahedron.)
-bool snaps(const Point& p, const std::array<Point, 4>& corners, const Weights& volume,
-           double total) {
+bool snaps(const Point& p, const std::array<Point, 4>& corners, const Weights& volume) {
+  // The sum of the volumes may be their rounding errors.
+  const double total = orientation(corners[0], corners[faces_of_tet[0][0]],
+                                   corners[faces_of_tet[0][1]], corners[faces_of_tet[0][2]]);
+  if (total == 0) return false;
   const double reach = tolerance(corners);
   for (std::size_t i = 0; i < 4; ++i) {
     if (volume[i] == 0 || (volume[i] < 0) == (total < 0)) continue;
@@ -87,16 +94,19 @@ std::optional<Location> locate(const Point& p, const std::array<Point, 4>& corne
   if (!(std::abs(total) > flat_limit * (reach[0] * reach[1] * reach[2])))
     volumes(orientation_exact);
   const auto [low, high] = std::minmax_element(volume.begin(), volume.end());
-  if (total == 0) return std::nullopt;
   Location location{};
   for (std::size_t i = 0; i < 4; ++i) location.weights[i] = volume[i] / total;
   if (*low >= 0 || *high <= 0) {
+    if (total == 0) return std::nullopt;
     location.status = *low == 0 || *high == 0 ? Status::boundary : Status::inside;
     return location;
   }
-  if (!snaps(p, corners, volume, total)) return std::nullopt;
-  location.distance = nearest_point(p, corners).distance;
+  if (!snaps(p, corners, volume)) return std::nullopt;
+  const NearestPoint nearest = nearest_point(p, corners);
+  location.distance = nearest.distance;
   location.status = Status::snapped;
+  const double least = *std::min_element(location.weights.begin(), location.weights.end());
+  if (!(least >= -most_extrapolation)) location.weights = nearest.weights;
   return location;
 }
 

@@ -3,6 +3,7 @@
 #include "m2m/interpolate/locate.hpp"
 #include "m2m/interpolate/orientation.hpp"
 #include "runtime/core/check.hpp"
+#include "runtime/core/error.hpp"
 #include "runtime/core/sort_unique.hpp"
 
 #include <algorithm>
@@ -218,6 +219,11 @@ void OverlapTarget::start_round(Channel& channel) {
   OverlapLoads::Sums loads = loads_.add_up(channel.loads.take(), status_.size(),
                                            setup.kind == TransferKind::conservative_bounded);
   const std::size_t n = loads.n_components;
+  for (const double load : loads.values)
+    if (std::isinf(load))
+      fail(ErrorCode::bad_value, "an integral of a ", name_of(setup.kind),
+           " transfer is infinite: a value is, or a value times a volume is above 1e308; scale the "
+           "field or the meshes");
   if (to_cells()) {
     for (std::size_t t = 0; t < covered_.size(); ++t) {
       const std::array<double, 4>& covered = covered_[t];

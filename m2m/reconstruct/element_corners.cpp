@@ -36,6 +36,13 @@ struct Elements {
 /// The mean over the volume; of the tetrahedra if they have none.
 Point centroid_of(const MeshView& mesh, std::span<const std::size_t> tets) {
   const Point origin = mesh.points[static_cast<std::size_t>(mesh.tets[tets.front()][0])];
+  double largest = 0;
+  for (const std::size_t t : tets)
+    for (const Point& p : corners_of(mesh.points, mesh.tets[t]))
+      for (const double x : difference(p, origin)) largest = std::max(largest, std::abs(x));
+  // In units of a power of two: a volume times a length may leave the range of double.
+  int exponent = 0;
+  (void)std::frexp(largest, &exponent);
   Point sum{}, plain{};
   double volume = 0;
   for (const std::size_t t : tets) {
@@ -45,13 +52,13 @@ Point centroid_of(const MeshView& mesh, std::span<const std::size_t> tets) {
     const Point mean = mean_of_corners(corners);
     volume += v;
     for (std::size_t k = 0; k < 3; ++k) {
-      sum[k] += v * mean[k];
+      sum[k] += v * std::ldexp(mean[k], -exponent);
       plain[k] += mean[k] / static_cast<double>(tets.size());
     }
   }
   Point out;
   for (std::size_t k = 0; k < 3; ++k)
-    out[k] = origin[k] + (volume > 0 ? sum[k] / volume : plain[k]);
+    out[k] = origin[k] + (volume > 0 ? std::ldexp(sum[k] / volume, exponent) : plain[k]);
   return out;
 }
 

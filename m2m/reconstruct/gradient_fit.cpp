@@ -8,7 +8,10 @@ namespace tess::m2m {
 namespace {
 
 /// A direction whose extent is smaller than this part of the largest one is left out.
-constexpr double least_extent = 1e-10;
+constexpr double least_extent = 1e-13;
+/// In principal axes, where the root mean square of each coordinate is 1: neighbours at smaller
+/// distances, whose differences may be rounding, count as those at this one.
+constexpr double least_distance = 1e-3;
 /// A term is dropped if less than this part of it is independent of the terms before it.
 constexpr double least_independent = 0.05;
 /// Of a quadratic polynomial in three variables without its constant.
@@ -133,7 +136,7 @@ double GradientFit::compute(std::span<const Point> offsets, FitDegree degree) {
   for (std::size_t j = 0; j < n; ++j) {
     double squared = 0;
     for (std::size_t k = 0; k < n_axes; ++k) squared += axis(k)[j] * axis(k)[j];
-    if (squared > 0) importance[j] = 1 / std::sqrt(squared);  // a neighbour at the point counts not
+    importance[j] = 1 / std::max(std::sqrt(squared), least_distance);
   }
   // Linear terms come first: they are independent of each other, because the axes are orthogonal.
   Terms terms(q_, n);

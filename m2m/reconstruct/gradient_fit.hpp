@@ -1,12 +1,12 @@
 // The gradient at a point from the values of neighbours, by a least-squares fit of a quadratic
-// polynomial through the value at the point itself:
+// polynomial through the value at the point itself (very near neighbours have no greater weight):
 //
 //     u_j - u_0 ~ g·d_j + ½ d_j·H d_j,   d_j = x_j - x_0,   weighted by 1 / |d_j|² .
 //
 // The gradient of the fit is second-order accurate inside and at boundaries (polynomial preserving
 // recovery: Zhang and Naga 2005, "A new finite element gradient recovery method"). The fit is done
 // in principal axes, each in its own unit, so neither the scale of a patch nor the aspect of its
-// layers changes the result.
+// layers, up to 1e13, changes the result.
 //
 // Patches that do not determine all terms fall back, term by term: a quadratic term that depends on
 // the terms before it is dropped; in a direction without extent (all neighbours in one plane or on

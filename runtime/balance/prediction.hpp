@@ -30,6 +30,9 @@ class Predictor {
   /// Records the measured loads of one more phase; unknown loads are left out.
   void record(const Snapshot& measured);
 
+  /// One more phase, whose loads are not recorded.
+  void pass() { ++n_phases_; }
+
   /// The load of the next phase; 0 for an element without history.
   [[nodiscard]] double load(const ElementKey& key) const;
 

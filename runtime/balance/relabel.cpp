@@ -1,27 +1,40 @@
 #include "runtime/balance/relabel.hpp"
 
+#include "runtime/balance/metrics.hpp"
+
 #include <algorithm>
 #include <map>
+#include <numeric>
 #include <tuple>
 
 namespace tess::balance {
 namespace {
+
+/// PEs whose background differs by less than this part of the average time can exchange their
+/// parts: where it is measured, no two are equal.
+constexpr double same_background = 0.02;
 
 /// Equal numbers for PEs that can exchange their parts.
 std::vector<std::size_t> kinds(const Snapshot& s) {
   std::vector<std::size_t> alone(s.pes.size(), 0);  // above 0: different from all others
   for (std::size_t i = 0; i < s.elements.size(); ++i)
     if (!s.elements.migratable[i]) alone[slot(s.elements.pe[i])] = 1 + slot(s.elements.pe[i]);
-  std::map<std::tuple<double, double, std::uint64_t, std::uint64_t, std::size_t>, std::size_t>
-      known;
-  std::vector<std::size_t> result;
-  for (std::size_t p = 0; p < s.pes.size(); ++p)
-    result.push_back(
-        known
-            .try_emplace({s.pes.speed[p], s.pes.background[p], s.pes.memory_limit_bytes[p],
-                          s.pes.working_bytes_of(p), alone[p]},
-                         known.size())
-            .first->second);
+  const auto needs = [&](std::size_t p) {
+    return std::tuple(s.pes.speed[p], s.pes.memory_limit_bytes[p], s.pes.working_bytes_of(p),
+                      alone[p]);
+  };
+  std::vector<std::size_t> order(s.pes.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::sort(order, {}, [&](std::size_t p) {
+    return std::tuple_cat(needs(p), std::tuple(s.pes.background[p], p));
+  });
+  const double near = same_background * average_time(s);
+  std::vector<std::size_t> result(s.pes.size());
+  for (std::size_t i = 0, first = 0; i < order.size(); ++i) {
+    const std::size_t p = order[i], of = order[first];
+    if (needs(p) != needs(of) || s.pes.background[p] - s.pes.background[of] > near) first = i;
+    result[p] = order[first];
+  }
   return result;
 }
 

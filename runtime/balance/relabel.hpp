@@ -7,7 +7,8 @@
 
 namespace tess::balance {
 
-/// `wanted` with its parts renumbered among PEs of equal speed, background and memory without
+/// `wanted` with its parts renumbered among PEs of equal speed and memory, and of nearly equal
+/// background (within 2 % of the average time), without
 /// pinned elements, such that the packed overlap with the present placement is large (greedily,
 /// largest overlap first).
 [[nodiscard]] Assignment relabel(const Snapshot& snapshot, Assignment wanted);

@@ -284,6 +284,10 @@ std::string latest_checkpoint(const std::string& folder) {
 Task read_checkpoint(std::string folder, std::string state_type, std::vector<std::byte>& state) {
   require_main("restart()");
   Pe& pe = current_pe();
+  if (pe.has_futures())
+    fail(ErrorCode::bad_argument,
+         "restart() comes first, but this run has already made a future, which a callback of the "
+         "saved run could find: make it after the restart");
   AskAll<&existing> present(Nothing{});
   for (const std::vector<std::string>& names : co_await present)
     if (!names.empty())

@@ -225,18 +225,28 @@ void fail_for_first(const std::vector<std::string>& errors) {
     if (!error.empty()) fail(ErrorCode::environment, "the checkpoint failed: ", error);
 }
 
-/// After a restart from another folder: the last checkpoint here that the run wrote before; 0: none.
-std::uint64_t last_before_restart(const std::string& folder, const Listing& listing,
-                                  std::uint64_t run) {
-  for (const std::uint64_t number : listing.numbers) {
-    if (!listing.is_complete(number)) continue;
-    try {
-      return read_manifest(folder_of(folder, number)).run == run ? number : 0;
-    } catch (const Error&) {
-      return 0;  // damaged, or only on another host
-    }
+/// The run that wrote a checkpoint; 0 if its manifest here is damaged.
+std::uint64_t run_here(Pe& /*pe*/, const FolderQuestion& question) {
+  try {
+    return read_manifest(question.folder).run;
+  } catch (const Error&) {
+    return 0;
   }
-  return 0;
+}
+
+/// After a restart from another folder: the last checkpoint here that the run wrote before; 0: none.
+Task last_before_restart(std::string folder, const Listing& listing, std::uint64_t run,
+                         std::uint64_t& last) {
+  const auto at = std::ranges::find_if(
+      listing.numbers, [&](std::uint64_t number) { return listing.is_complete(number); });
+  if (at == listing.numbers.end()) co_return;
+  const auto host = static_cast<std::size_t>(
+      std::ranges::find_if(listing.complete_on, [&](const auto& on) { return on.contains(*at); }) -
+      listing.complete_on.begin());
+  const PeId there = listing.hosts.first.at(host);
+  AskAll<&run_here> asked(FolderQuestion{folder_of(folder, *at)}, {there});
+  const std::vector<std::uint64_t> runs = co_await asked;
+  if (runs[static_cast<std::size_t>(there.value)] == run) last = *at;
 }
 
 /// Throws Error if the folder has a checkpoint that this run neither wrote nor found at its
@@ -353,7 +363,7 @@ Task save_all(std::string folder, MainPart main, CheckpointOptions options, Begu
   Runtime::OwnCheckpoints& ours = pe.runtime().own_checkpoints(canonical(folder));
   std::uint64_t& run = pe.runtime().checkpoint_run();
   if (run == 0) run = new_run();
-  if (ours.last == 0) ours.last = last_before_restart(folder, listing, run);
+  if (ours.last == 0) co_await last_before_restart(folder, listing, run, ours.last);
   require_own(folder, listing, ours);
   Manifest manifest = next_manifest(pe, listing, options);
   const std::string here = folder_of(folder, manifest.number);

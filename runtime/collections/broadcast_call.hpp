@@ -51,6 +51,7 @@ struct NumberedCall {
   EpochId epoch{};
   SharedCall call;
   std::uint32_t n_complete = 0;
+  std::uint64_t n_bytes = 0;  ///< of its arguments when packed
 
   [[nodiscard]] std::int64_t priority() const { return call->priority(); }
   /// The collection has ended, so no element is called. Returns the number of lost broadcasts.
@@ -58,7 +59,7 @@ struct NumberedCall {
 
   template <class Ar>
   void serialize(Ar& ar) {
-    ar(number, epoch, n_complete);
+    ar(number, epoch, n_complete, n_bytes);
     if constexpr (Ar::is_reading) {
       read(ar, static_cast<const BroadcastKind&>(Registry::at(ar.template take<std::uint32_t>())));
     } else {

@@ -11,8 +11,10 @@
 namespace tess::detail {
 namespace {
 
-// Settled broadcasts are reported to the root in portions, so that a broadcast costs no reply.
+// Settled broadcasts are reported to the root in portions of so many or so many bytes, so that a
+// small broadcast costs no reply.
 constexpr std::uint64_t portion = 16;
+constexpr std::uint64_t portion_bytes = 1 << 20;
 
 // Elements keep the number of a broadcast in 32 bits.
 constexpr std::uint64_t most_broadcasts = ~std::uint32_t{0};
@@ -81,10 +83,13 @@ void BroadcastLog::settle() {
       tables_->in_flight.empty() ? applied_ : std::min(applied_, tables_->in_flight.begin()->first);
   while (settled_ < now) {
     ++settled_;
-    completion_.processed(tables_->copies[settled_ - first_kept_].epoch);
+    const NumberedCall& call = tables_->copies[settled_ - first_kept_];
+    untold_bytes_ += call.n_bytes;
+    completion_.processed(call.epoch);
   }
-  if (settled_ - told_ < portion) return;
+  if (settled_ - told_ < portion && untold_bytes_ < portion_bytes) return;
   told_ = settled_;
+  untold_bytes_ = 0;
   host_.send(root_, BroadcastSettled{here_, settled_});
 }
 

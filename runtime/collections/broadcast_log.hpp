@@ -89,6 +89,7 @@ class BroadcastLog {
   std::uint64_t applied_ = 0;
   std::uint64_t settled_ = 0;
   std::uint64_t told_ = 0;
+  std::uint64_t untold_bytes_ = 0;  // of the settled calls behind told_
   std::uint64_t first_kept_ = 1;
   struct Tables;
   const std::unique_ptr<Tables> tables_;  // the calls kept here

@@ -61,11 +61,7 @@ Sections& Collection::sections() {
 }
 
 PeId Collection::mapped_home(const void* index) const {
-  try {
-    return index_map_->home(index, range_, pe_.n_pes());
-  } catch (...) {
-    pe_.rethrow_kept();
-  }
+  return call_user([&] { return index_map_->home(index, range_, pe_.n_pes()); });
 }
 
 std::pair<std::int64_t, std::int64_t> Collection::ranks_of_blocks(bool class_places) const {
@@ -164,6 +160,7 @@ void Collection::deliver(Partial& result, EpochId epoch, std::string_view of) {
     result.complete(pe_);
   } catch (...) {
     pe_.note_place(text("at the end of a reduction of ", of, name()));
+    pe_.keep_exception(std::current_exception());
     throw;
   }
 }
@@ -206,6 +203,8 @@ void Collection::apply(const NumberedCall& call) {
 }
 
 void Collection::contribute(Element& element, std::unique_ptr<Partial> value) {
+  TESS_CHECK(element.state_.created_after != destroyed_now, element_text(element),
+             " contributes in its destructor: contribute before destroy()");
   if (ended_) return;  // its coroutine outlives the array: nothing waits for a result
   Newcomer newcomer;
   if (element.state_.created_after != 0)
@@ -275,7 +274,7 @@ void Collection::continue_wait(const Element& element, Envelope& message, std::u
 }
 
 bool Collection::known(const BalanceRecord& record) {
-  return record.sync.known;
+  return record.sync.entry != SyncEntry::none;
 }
 
 void Collection::note_unwatched_end(const Element& element) {
@@ -314,6 +313,8 @@ void Collection::end_wait(Element& element) {
 }
 
 void Collection::at_sync(Element& element) {
+  TESS_CHECK(element.state_.created_after != destroyed_now, element_text(element),
+             " calls at_sync() in its destructor, and nothing resumes it");
   if (ended_) return;  // no round resumes it: it ends once its coroutine is done
   SyncState& sync = make_record(element).sync;
   TESS_CHECK(sync.phase == SyncPhase::runs, element_text(element),

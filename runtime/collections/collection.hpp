@@ -99,6 +99,8 @@ class Collection : public HostedCollection {
     reductions_.added(element.state_.next_reduction++, cause_of(element));
   }
 
+  /// The element is destroyed now: its destructor does not contribute.
+  static void counts_no_more(Element& element) { element.state_.created_after = destroyed_now; }
   /// From now on the element keeps the number of its next reduction.
   void settle_join(Element& element) {
     if (element.state_.created_after == 0) return;

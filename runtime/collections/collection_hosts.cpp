@@ -37,9 +37,11 @@ void start_broadcast(CollectionId collection, SharedCall call) {
     refuse_empty_proxy(text("a broadcast of ", plain_name(call->action().name()), " to"));
   Pe& pe = current_pe();
   const EpochId epoch = pe.context().epoch;
+  Writer count{std::span<std::byte>()};
+  call->pack(count);  // may throw
   pe.completion().sent(epoch);
   send_to_collection<&start_arrives>(pe, collection, root_of(collection, pe.n_pes()),
-                                     NumberedCall{0, epoch, std::move(call)});
+                                     NumberedCall{0, epoch, std::move(call), 0, count.n_bytes()});
 }
 
 std::uint64_t NumberedCall::drop(Pe& pe) const {

@@ -15,6 +15,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 
 namespace tess {
@@ -176,6 +177,7 @@ class BlockMap {
 template <class... Extent>
 [[nodiscard]] Range range(Extent... extents) {
   static_assert(sizeof...(Extent) >= 1 && sizeof...(Extent) <= 6, "a range has one to six axes");
+  static_assert((std::is_integral_v<Extent> && ...), "the extents of a range are integers");
   Range out;
   for (const auto extent : {static_cast<std::int64_t>(extents)...}) {
     if (extent < 0 || extent > 0x7fffffff)

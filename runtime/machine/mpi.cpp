@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <limits>
 #if defined(__GLIBC__)
 #include <malloc.h>
 #endif
@@ -27,6 +28,8 @@ void keep_freed_memory() {
 #endif
 }
 
+constexpr std::int32_t most_pes = std::numeric_limits<std::int32_t>::max();
+
 class MpiMachine final : public Machine, private Network {
  public:
   MpiMachine(int& argc, char**& argv, const MpiOptions& options) : session_(argc, argv) {
@@ -34,12 +37,17 @@ class MpiMachine final : public Machine, private Network {
     n_processes_ = session_.n_processes();
     process_ = ProcessId{session_.process()};
     const Session::Sharing shared = session_.sharing(topology_.cpuset());
-    pes_per_process_ = options.pes_per_process;
-    if (pes_per_process_ == 0)
-      pes_per_process_ = session_.least(std::max(1, topology_.n_cores() / shared.n_processes));
+    // All take part, whether they were given a number or not.
+    const std::int32_t share = std::max(1, topology_.n_cores() / shared.n_processes),
+                       given = options.pes_per_process,
+                       least = session_.least(given != 0        ? given
+                                              : options.refuses ? most_pes
+                                                                : share);
+    pes_per_process_ = given != 0 ? given : least;
     if (!agree(static_cast<std::uint64_t>(pes_per_process_)))
       fail(ErrorCode::bad_argument, "the processes were given different numbers of PEs, this one ",
            pes_per_process_, ": start them all with the same --pes");
+    if (options.refuses) pes_per_process_ = 1;
 
     const bool enough = shared.n_processes * pes_per_process_ <= topology_.n_cores();
     placement_ = {.pinned = enough && options.pinning == Pinning::automatic,

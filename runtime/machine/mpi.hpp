@@ -17,6 +17,7 @@ namespace tess::detail {
 
 struct MpiOptions {
   std::int32_t pes_per_process = 1;  // 0: the process's share of the cores that it may use
+  bool refuses = false;              // it only takes part until the others know; pes_per_process 0
   Pinning pinning = Pinning::automatic;
   std::size_t chunk_bytes = std::size_t{1} << 30;  // largest chunk; MPI counts with 31 bits
 };

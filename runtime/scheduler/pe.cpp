@@ -100,11 +100,6 @@ void Pe::keep_exception(std::exception_ptr error) {
   if (!kept_exception_) kept_exception_ = std::move(error);
 }
 
-void Pe::rethrow_kept() {
-  keep_exception(std::current_exception());
-  throw;
-}
-
 void Pe::set_forced_migrations(double chance, ElementMover* mover) {
   migration_chance_ = chance;
   mover_ = mover;
@@ -485,6 +480,9 @@ void* Pe::require_future(std::uint64_t id) const {
 }
 std::uint32_t Pe::places_of_futures() const {
   return futures_->n_places();
+}
+bool Pe::has_futures() const {
+  return !futures_->empty();
 }
 void Pe::begin_futures_behind(std::uint32_t places) {
   futures_->begin_behind(places);

@@ -239,6 +239,7 @@ class Pe {
   /// For restarts: numbers of futures made from now on begin behind those of the saved run, so that
   /// a callback that was saved finds none of them.
   [[nodiscard]] std::uint32_t places_of_futures() const;
+  [[nodiscard]] bool has_futures() const;
   void begin_futures_behind(std::uint32_t places);
   /// Ends with an error that says why it was destroyed, or never was there.
   [[nodiscard]] void* require_future(std::uint64_t id) const;
@@ -247,9 +248,6 @@ class Pe {
   /// message that cannot be packed, whose epoch would wait for ever. It is rethrown at the end of
   /// the message that runs.
   void keep_exception(std::exception_ptr error);
-  /// The same for the exception that is handled, which is rethrown: it leaves user code that the
-  /// runtime called in the middle of its own work, such as a constructor.
-  [[noreturn]] void rethrow_kept();
   /// An exception leaves the code of an element: records the place for the report.
   void note_place();
   /// The same for code that is of no element: `instead` says what ran.
@@ -403,6 +401,19 @@ inline thread_local Pe* the_current_pe = nullptr;
 
 /// The PE that this thread runs right now. Misuse outside of a PE ends the job.
 [[nodiscard]] Pe& current_pe();
+
+/// Calls user code in the middle of the runtime's own work, such as a constructor, a map or the
+/// operation of a reduction. An exception is kept, so that it ends the run, also if it is
+/// caught.
+template <class F>
+decltype(auto) call_user(F&& code) {
+  try {
+    return std::forward<F>(code)();
+  } catch (...) {
+    current_pe().keep_exception(std::current_exception());
+    throw;
+  }
+}
 
 /// Checks that the run has a PE of this number.
 inline void check_exists(const Pe& pe, PeId id) {

@@ -2,11 +2,13 @@
 
 #include "runtime/base/program_name.hpp"
 #include "runtime/core/check.hpp"
+#include "runtime/core/hash.hpp"
 #include "runtime/report/pe_watch.hpp"
 #include "runtime/scheduler/measure/critical_path.hpp"
 #include "runtime/scheduler/pe_action.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <fmt/core.h>
 
@@ -102,6 +104,10 @@ void Runtime::watch(ProcessMonitor& monitor) {
   for (const auto& pe : pes_) pe->start_idle_time();
 }
 
+void Runtime::prepare() const {
+  if (!options_.trace.empty()) require_writable_trace(trace_path());
+}
+
 int Runtime::refuse_job(std::string_view why) {
   if (machine_.process().value == 0) error_line(heading(options_) + std::string(why));
   // A process that leaves ends the others: wait until the line is printed.
@@ -111,15 +117,27 @@ int Runtime::refuse_job(std::string_view why) {
 
 int Runtime::run() {
   Registry::seal();
+  struct Common {
+    std::uint64_t value;
+    std::string_view differs;
+  };
+  const std::array<Common, 4> common{{
+      {Registry::fingerprint(),
+       "the processes of this job run different programs: start the same build everywhere"},
+      {options_.audit ? 1U : 0U,
+       "only some processes of this job were given --audit: give it to all"},
+      {options_.monitor ? 1U : 0U,
+       "only some processes of this job were given --monitor: give it to all"},
+      {options_.messages.memory_bytes,
+       "the processes of this job were given different --message-memory: give the same to all"},
+  }};
+  std::uint64_t all = 0;
+  for (const Common& one : common) all = mix(all ^ one.value);
   // Which of them differs is asked only then. It also holds the others until a process that was
   // refused (run.cpp) ends the job with its own error.
-  const std::uint64_t program = Registry::fingerprint();
-  if (!machine_.agree(program + (options_.audit ? 1 : 0)))
-    return refuse_job(machine_.agree(program)
-                          ? "only some processes of this job were given --audit: give it to all"
-                          : "the processes of this job run different programs: start the same "
-                            "build everywhere");
-  if (!options_.trace.empty()) require_writable_trace(trace_path());
+  if (!machine_.agree(all))
+    for (const Common& one : common)
+      if (!machine_.agree(one.value)) return refuse_job(one.differs);
   machine_.run(*this);
   write_traces();
   if (left_) return exit_code_;

@@ -70,6 +70,8 @@ class Runtime final : public Program {
   /// Posts a message to a PE of this process once the delay is over.
   void post_after(PeId to, Envelope* message, Time delay);
 
+  /// Throws Error if this process cannot run.
+  void prepare() const;
   /// Drives this process until the run ends; returns the exit code.
   int run();
 

@@ -112,6 +112,8 @@ refuses "missing/r.pvtu" "${alone[@]}" --out "$scratch/missing/r.pvtu"
 refuses "cut.png: a picture's name must end in .svg" "${alone[@]}" --picture "$scratch/cut.png"
 refuses "would overwrite --out" "${alone[@]}" --out "$scratch/same.exo" --json "$scratch/same.exo"
 refuses "would overwrite SOURCE" "$bin/m2m_transfer" "$scratch/kept.msh" kuhn:2 --trace "$scratch/kept.msh"
+cp "$scratch/box.msh" "$scratch/kept2.msh"
+refuses "would overwrite SOURCE" "$bin/m2m_transfer" "$scratch/kept.msh,$scratch/kept2.msh" kuhn:3 --study h --json "$scratch/kept.msh"
 refuses "would overwrite OVERSET" "$bin/overset" kuhn:8 "$scratch/kept.msh" --json "$scratch/kept.msh"
 cmp -s "$scratch/box.msh" "$scratch/kept.msh" || fail "a mesh that is read was overwritten"
 # Names that --out derives, of parts and of several results.
@@ -125,6 +127,7 @@ refuses "--plot" "$bin/m2m_transfer" kuhn:2 kuhn:3 --study kind --plot "$scratch
 refuses missing.msh "$bin/m2m_transfer" --json "$scratch/result.json" "$scratch/missing.msh" --stability
 
 overset=("$bin/overset" --json "$scratch/result.json")
+refuses "log(x-2)" "${overset[@]}" kuhn:8 ball:4 --field "log(x-2)"
 refuses "kuhn:3 has no cavity" "${overset[@]}" kuhn:4 kuhn:3
 refuses "ball:1: give a number" "${overset[@]}" kuhn:4 ball:1
 refuses "no side set body; it has none, since only ExodusII" "${overset[@]}" kuhn:4 ball:4 --wall body
@@ -165,6 +168,8 @@ refuses "--message-ns: Value -1 not in range" "${crowd[@]}" --message-ns=-1
 refuses "--latency-ns: Value -1 not in range" "${crowd[@]}" --latency-ns=-1
 refuses "--out $scratch/missing/x.svg: cannot be written" "${crowd[@]}" --out "$scratch/missing/x"
 
+refuses "^collide_scene: error: --json: needs an INPUT" "$bin/collide_scene" --stability --json "$scratch/never.json"
+refuses "^particles: error: --steps: needs a SCENE" "$bin/particles" --stability --steps 5
 refuses "^collide_scene: error: voxel grid: coordinate" "$bin/collide_scene" boxes:100 --pes 2 --voxel-size 1e-30
 
 scaling=("$bin/m2m_scaling" --pes 1)

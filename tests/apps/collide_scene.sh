@@ -86,6 +86,8 @@ done
 # Reports.
 "$scene" planes:4096 --study --out "$scratch/out/planes" >"$scratch/table" && grep -q 'triangles .* 0.00 ' "$scratch/table"
 check "--study" $?
+"$scene" needles:2000 --triangles --study >"$scratch/table" && ! grep -q 'OTHER PAIRS' "$scratch/table"
+check "the study of thin triangles, whose candidates are pieces in one row" $?
 for file in planes_study.csv planes_study_time.csv planes_study_error.csv; do
   [[ -s $scratch/out/$file ]]
   check "the study writes $file" $?

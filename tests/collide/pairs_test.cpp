@@ -322,6 +322,12 @@ TEST_CASE("empty sets and single objects have no pairs", "[pairs]") {
   REQUIRE(pairs(std::span(one)).empty());
   REQUIRE(pairs(std::span(none), std::span(one)).empty());
   REQUIRE(pairs(std::span(one), std::span(one)).size() == 1);
+  // Statistics are those of the last search, also of an empty one.
+  PairStatistics statistics;
+  REQUIRE(count_pairs(std::span(one), std::span(one), {.statistics = &statistics}) == 1);
+  REQUIRE(statistics.n_candidates == 1);
+  REQUIRE(count_pairs(std::span(one), std::span(none), {.statistics = &statistics}) == 0);
+  REQUIRE(statistics.n_candidates == 0);
 }
 
 TEST_CASE("a bad box, voxel size or list of models is an error that names it", "[pairs]") {

@@ -28,6 +28,9 @@ TEST_CASE("an expression has the value of the same expression in C++", "[m2m][fi
         std::sin(x) * std::cos(y) + std::exp(x) - std::log(z) + std::tan(x));
   CHECK(Expression("sqrt(abs(y))")(p) == std::sqrt(1.5));
   CHECK(Expression("min(x, max(y, z)) + pow(z, 3)")(p) == x + 8);
+  for (const char* text :
+       {"min(1, sqrt(y))", "min(sqrt(y), 1)", "max(1, sqrt(y))", "max(sqrt(y), 1)"})
+    CHECK(std::isnan(Expression(text)(p)));
 }
 
 TEST_CASE("an error in an expression names its position", "[m2m][field]") {

@@ -157,6 +157,17 @@ TEST_CASE("the state of a reduction's operation travels", "[api]") {
   });
 }
 
+TEST_CASE("the greatest and least of values with NaN are NaN, in every order", "[api]") {
+  const double nan = std::nan("");
+  for (const auto& [a, b] : {std::pair(nan, 1.0), {1.0, nan}, {nan, nan}}) {
+    CHECK(std::isnan(tess::max(a, b)));
+    CHECK(std::isnan(tess::min(a, b)));
+  }
+  CHECK(tess::max(1.0, 2.0) == 2);
+  CHECK(tess::min(std::vector<double>{1, nan}, std::vector<double>{0, 5})[0] == 0);
+  CHECK(std::isnan(tess::min(std::vector<double>{1, nan}, std::vector<double>{0, 5})[1]));
+}
+
 TEST_CASE("a reduction of exact sums has the same bits in every order", "[api]") {
   constexpr int n = 40;
   double rounded = 0;

@@ -64,6 +64,21 @@ once "different programs"
 ends 2 "different numbers of PEs" -n 1 "$job" exit --pes 1 : -n 1 "$job" exit --pes 2
 ends 2 "only some processes of this job were given --audit" -n 1 "$job" exit --pes 1 --audit : -n 1 "$job" exit --pes 1
 once "error: "
+ends 2 "only some processes of this job were given --monitor" -n 1 "$job" exit --pes 1 --monitor 0 : -n 1 "$job" exit --pes 1
+once "error: "
+ends 2 "different --message-memory" -n 1 "$job" exit --pes 1 --message-memory 1KiB : -n 1 "$job" exit --pes 1
+once "error: "
+# What one process alone cannot do ends the others.
+ends 2 "--monitor 192.0.2.7:0" -n 2 "$job" exit --pes 1 --monitor 192.0.2.7:0 --monitor-token t
+once "error: "
+mkdir "$scratch/trace.1"
+ends 2 "trace.1" -n 2 "$job" exit --pes 1 --trace "$scratch/trace"
+once "error: "
+# --pes on one of them: the others take that number, or say that theirs differs.
+ends 5 "" -n 1 "$job" exit --pes 1 : -n 1 "$job" exit
+ends 2 "different numbers of PEs" -n 1 "$job" exit --pes 64 : -n 1 "$job" exit
+ends 2 "--hang-report: x is not a number" -n 1 "$job" exit --pes 3 : -n 1 "$job" exit --pes 3 --hang-report x
+once "error: "
 ends 2 "--hang-report: x is not a number" -n 1 "$job" exit --pes 1 : -n 1 "$job" exit --pes 1 --hang-report x
 once "error: "
 # The simulated machine is one process; with one process mpirun changes nothing.

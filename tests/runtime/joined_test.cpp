@@ -6,6 +6,8 @@
 #include "tests/support/catch.hpp"
 
 #include <string>
+#include <utility>
+#include <vector>
 
 using namespace std::chrono_literals;
 
@@ -34,6 +36,22 @@ class Clerk : public tess::Chare<Clerk> {
     const int left = static_cast<int>(notes_.size());
     target(std::get<1>(both).key + (first.index() == 1 ? 10 : 20) + left);
   }
+  /// An error leaves what the others have got: the message that was there, that which came while
+  /// they were awaited, and the future's result.
+  tess::Task read_in_vain(tess::Callback<int> target) {
+    tess::Future<int> there;
+    there.callback()(5);
+    notes_.put({3});
+    try {
+      (void)co_await tess::when_all(notes_.take(3), notes_.take(4), there, tess::epoch([this] {
+                                      notes_.put({4});
+                                      tess::fail(tess::ErrorCode::bad_value, "no");
+                                    }));
+    } catch (const tess::Error&) {
+    }
+    const int left = co_await there;
+    target(10 * static_cast<int>(notes_.size()) + left);
+  }
   template <class Ar>
   void serialize(Ar& ar) {
     ar(n_filed_, papers_, notes_);
@@ -47,10 +65,16 @@ class Clerk : public tess::Chare<Clerk> {
 struct Joined {
   int of_both = 0;
   std::size_t first = 9, at_once = 9;
-  int after_first = 0, of_third = 0, own = 0;
+  int after_first = 0, of_third = 0, own = 0, kept = 0, n_done = 0;
   bool ran = false;
   std::string error;
 };
+
+tess::Task count_later(int& n_done, bool fails) {
+  co_await tess::sleep(1us);
+  ++n_done;
+  if (fails) tess::fail(tess::ErrorCode::bad_value, ", nor this");
+}
 
 tess::Task join(Joined& found) {
   const auto clerks = tess::create<Clerk>(tess::range(4));
@@ -82,6 +106,17 @@ tess::Task join(Joined& found) {
   tess::Future<int> own;
   clerks[{2}].send<&Clerk::read_own>(own.callback());
   found.own = co_await own;
+  tess::Future<int> kept;
+  clerks[{1}].send<&Clerk::read_in_vain>(kept.callback());
+  found.kept = co_await kept;
+  std::vector<tess::Task> tasks;
+  for (const bool fails : {false, true, true, false})
+    tasks.push_back(count_later(found.n_done, fails));
+  try {
+    co_await tess::when_all(std::move(tasks));
+  } catch (const tess::Error& error) {
+    found.error += error.what();
+  }
 }
 
 void check_joined(const Joined& found) {
@@ -89,7 +124,9 @@ void check_joined(const Joined& found) {
   tess::test::expect(found.first == 1, "first ", found.first);
   tess::test::expect(found.after_first == 1, "second ", found.after_first);
   tess::test::expect(found.at_once == 0 && !found.ran, "at once ", found.at_once);
-  tess::test::expect(found.error == "no", found.error);
+  tess::test::expect(found.error == "no, nor this", found.error);
+  tess::test::expect(found.kept == 25, "kept ", found.kept);
+  tess::test::expect(found.n_done == 4, "tasks ", found.n_done);
   tess::test::expect(found.own == 11 || found.own == 22, "own ", found.own);
 }
 
@@ -147,7 +184,7 @@ TEST_CASE("epochs are awaited together on the machine of threads", "[runtime][wh
   tess::Setup setup{tess::make_threads_machine(2), {}};
   REQUIRE(tess::run(setup, [&]() -> tess::Task { return join(found); }) == 0);
   tess::test::expect(
-      found.of_both == 20 && found.own != 0 && found.error == "no" && found.at_once == 0,
+      found.of_both == 20 && found.own != 0 && found.error == "no, nor this" && found.at_once == 0,
       "threads");
 }
 

@@ -187,6 +187,57 @@ class Parting : public tess::Chare<Parting> {
   ~Parting() { tess::ArrayProxy<Block>(tess::CollectionId{77})[{0}].send<&Block::nothing>(); }
 };
 
+/// Contributes in its destructor.
+class Leaver : public tess::Chare<Leaver> {
+ public:
+  Leaver() = default;
+  explicit Leaver(tess::Callback<int> target) : target_(target) {}
+  Leaver(const Leaver&) = delete;
+  Leaver& operator=(const Leaver&) = delete;
+  ~Leaver() { contribute(tess::sum, 1, target_); }
+
+ private:
+  tess::Callback<int> target_;
+};
+
+tess::Task contribute_at_the_end() {
+  tess::Future<int> sum;
+  const auto leavers = tess::create<Leaver>(tess::range(2), sum.callback());
+  co_await tess::epoch([&] { leavers[{1}].destroy(); });
+}
+
+/// The operation of its reduction throws.
+struct Torn {
+  int operator()(int /*a*/, int /*b*/) const {
+    tess::fail(tess::ErrorCode::bad_value, "the sum is torn");
+  }
+};
+class Adder : public tess::Chare<Adder> {
+ public:
+  void add(tess::Callback<int> target) { contribute(Torn{}, 1, target); }
+};
+tess::Task add_and_catch() {
+  tess::Future<int> sum;
+  const auto adders = tess::create<Adder>(tess::range(2));
+  for (int x = 0; x < 2; ++x) {
+    try {
+      co_await adders[{x}].ask<&Adder::add>(sum.callback());
+    } catch (const tess::Error&) {
+    }
+  }
+  (void)co_await sum;
+}
+
+tess::Task sleep_twice() {
+  tess::Sleep sleep = tess::sleep(std::chrono::milliseconds(1));
+  struct Sleeper {
+    static tess::Task wait(tess::Sleep& on) { co_await on; }
+  };
+  tess::Task first = Sleeper::wait(sleep), second = Sleeper::wait(sleep);
+  co_await first;
+  co_await second;
+}
+
 /// Contributes to a section of another array of its class.
 class Voter : public tess::Chare<Voter> {
  public:
@@ -535,6 +586,10 @@ const std::map<std::string, std::function<void()>> misuses{
      [] {
        const tess::Task task = votes_of({7, 8, 9, 0, 2});
      }},
+    {"destructor_contributes", [] { const tess::Task task = contribute_at_the_end(); }},
+    {"torn_sum", [] { const tess::Task task = add_and_catch(); }},
+    {"sleep_twice", [] { const tess::Task task = sleep_twice(); }},
+    {"work_of_the_past", [] { (void)tess::charge(std::chrono::nanoseconds(-1)); }},
     {"destructor_sends", [] { tess::create<Parting>(tess::range(3)); }},
     {"array_not_known",
      [] {

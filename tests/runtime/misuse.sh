@@ -84,6 +84,11 @@ here section_mean_of_none "the mean of no values" "on PE ., at the end of a redu
 everywhere stranger_votes "Stranger\[7\] contributes to a section that it is no member of"
 here strangers_vote "Stranger\[7\] contributes to a section that it is no member of"
 everywhere destructor_sends "the destructor of Parting calls the runtime after the end of the run: destroy() the array or group before"
+here destructor_contributes "Leaver\[1\] contributes in its destructor: contribute before destroy()"
+timeout -k 5 30 "$program" torn_sum --pes 2 >"$out" 2>&1 </dev/null
+(($? == 2)) && grep -q "error: the sum is torn" "$out" && pass || fail "torn_sum"
+here sleep_twice "two coroutines await one sleep()"
+here work_of_the_past "charge(-1ns): work takes time"
 here array_not_known "the array of this proxy is not known yet on PE 0: create it inside an awaited epoch"
 here group_not_known "this group is not known yet on PE 0: create it inside an awaited epoch"
 here array_after_end "the array of this proxy was destroyed on PE 0"

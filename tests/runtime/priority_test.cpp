@@ -35,6 +35,13 @@ class Actor : public tess::Chare<Actor> {
     array().with(tess::Priority{-1}).broadcast<&Actor::say>("broadcast");
     array()[{1}].send<&Actor::say>("message");
   }
+  tess::Task act_by_section() {
+    const auto section = tess::create_section(array(), {{0}, {1}});
+    co_await tess::epoch([&] { section.broadcast<&Actor::say>("known"); });
+    section.broadcast<&Actor::say_soon>("by the class");
+    array()[{1}].with(tess::Priority{-8}).send<&Actor::say>("earlier");
+    array()[{1}].send<&Actor::say>("plain");
+  }
   void act_inline() {
     array()[{1}].send<&Actor::say_at_once>("other");
     said.push_back("after other");
@@ -85,6 +92,12 @@ TEST_CASE("the messages of an entry method run by priority", "[runtime][priority
 TEST_CASE("a broadcast with a priority overtakes messages without one", "[runtime][priority]") {
   REQUIRE(act<&Actor::act_by_broadcast>(2) == 0);
   CHECK(said == std::vector<std::string>{"broadcast", "broadcast", "message", "message"});
+}
+
+TEST_CASE("a section's broadcast has the priority of its entry method", "[runtime][priority]") {
+  REQUIRE(act<&Actor::act_by_section>(2) == 0);
+  CHECK(said == std::vector<std::string>{"known", "known", "earlier", "by the class",
+                                         "by the class", "plain"});
 }
 
 TEST_CASE("an inline entry method runs inside send(), but not inside its own element",

@@ -209,6 +209,35 @@ tess::Task scan_group(std::vector<std::pair<tess::Index1, int>>& found) {
   found = co_await all;
 }
 
+/// An index of a user's, in its own order, whose words are not those of a grid.
+struct Shelf {
+  std::int32_t x = 0;
+  std::int16_t y = 0, z = 0;
+  friend auto operator<=>(const Shelf&, const Shelf&) = default;
+};
+class Book : public tess::Chare<Book, Shelf> {
+ public:
+  tess::Task read(tess::Callback<std::vector<std::pair<Shelf, int>>> all) {
+    tess::Future<int> sum;
+    contribute(tess::inclusive_scan(tess::sum), static_cast<int>(index().z), sum.callback());
+    const int before = co_await sum;
+    contribute(tess::gather, before, all);
+  }
+};
+
+tess::Task scan_books(std::vector<std::pair<Shelf, int>>& found) {
+  const auto books = tess::create<Book>(tess::sparse);
+  co_await tess::epoch([&] {
+    books[Shelf{0, 0, 5}].insert_on(tess::PeId{0});
+    books[Shelf{0, 1, 5}].insert_on(tess::PeId{0});
+    books[Shelf{0, 0, 6}].insert_on(tess::PeId{1});
+    books[Shelf{0, 1, 1}].insert_on(tess::PeId{1});
+  });
+  tess::Future<std::vector<std::pair<Shelf, int>>> all;
+  books.broadcast<&Book::read>(all.callback());
+  found = co_await all;
+}
+
 /// One element never contributes, or the array ends in the middle: nothing of the scan is left.
 class Leaf : public tess::Chare<Leaf> {
  public:
@@ -290,6 +319,14 @@ TEST_CASE("elements outside the range stand in a scan where their indices stand"
     machine.run([&]() -> tess::Task { return scan_cells(n_all); }).require_success();
     tess::test::expect(n_all == n_before_cells, "values before: ", n_all);
   });
+}
+
+TEST_CASE("a scan is in the order of a user's index", "[runtime][scan]") {
+  std::vector<std::pair<Shelf, int>> found;
+  const tess::test::Machine machine{.pes = 2, .seed = 1};
+  machine.run([&]() -> tess::Task { return scan_books(found); }).require_success();
+  CHECK(found == std::vector<std::pair<Shelf, int>>{
+                     {{0, 0, 5}, 5}, {{0, 0, 6}, 11}, {{0, 1, 1}, 12}, {{0, 1, 5}, 17}});
 }
 
 TEST_CASE("a scan of a group is in the order of PEs", "[runtime][scan]") {

@@ -37,6 +37,10 @@ struct Answer {
     return *this;
   }
   friend bool operator==(const Answer&, const Answer&) = default;
+  /// Candidates may differ: long thin triangles are searched in pieces where the voxels are small.
+  [[nodiscard]] bool has_pairs_of(const Answer& other) const noexcept {
+    return n_pairs == other.n_pairs && hash == other.hash;
+  }
 };
 
 /// What the library says about its grid; a number that it does not say is absent.

@@ -60,7 +60,7 @@ std::vector<StudyRow> study(const Scene& scene, const Options& options, apps::Pr
       measure(scene, rules, row);
       if (factor == 1 && !(row.voxel_size > 0)) row.voxel_size = edge_per_object(scene);
       rows.push_back(row);
-      rows.back().agrees = row.answer == rows[chosen].answer;
+      rows.back().agrees = row.answer.has_pairs_of(rows[chosen].answer);
     }
   }
   const Answer exact = rows[rows.size() - factors.size()].answer;  // pairs of objects

@@ -108,9 +108,9 @@ std::string explain_text(const Settings& s, std::int32_t n_pes) {
   for (const std::string& name : s.workloads) {
     const Problem p = problem_of(s, find_workload(name), n_pes);
     const double total = total_seconds(p);
-    double speed = n_pes;
+    double speed = n_pes;  // in that of the fastest PE, which works at full speed
     if (!s.speeds.empty()) speed = 0;
-    for (const double one : s.speeds) speed += one;
+    for (const double one : s.speeds) speed += one / std::ranges::max(s.speeds);
     out += fmt::format("{}: {}; {:.4g} s of work, {:.4g} s at best on {} PEs\n", name,
                        workload_of(p).kind->describe(p), total, total / speed, n_pes);
   }
@@ -146,11 +146,14 @@ void remove_snapshots(const std::filesystem::path& folder) {
 }  // namespace
 
 void save_snapshots(const Settings& s, const Row& row, const Outcome& outcome) {
-  if (outcome.phases.empty()) return;
   const std::filesystem::path folder =
       std::filesystem::path(s.snapshots) /
       fmt::format("{}-{}-{}", row.workload, row.per_pe, row.strategy);
   std::error_code error;
+  if (outcome.phases.empty()) {  // those of a run before are not of this one
+    if (std::filesystem::is_directory(folder, error)) remove_snapshots(folder);
+    return;
+  }
   std::filesystem::create_directories(folder, error);
   if (error)
     tess::fail(tess::ErrorCode::environment, "--save-snapshot: ", folder.string(), ": ",

@@ -18,7 +18,10 @@ namespace lb_lab {
 template <class C>
 [[nodiscard]] tess::BalancerProxy start_balancing(tess::ArrayProxy<C> array,
                                                   const Experiment& experiment, Outcome& outcome) {
-  if (experiment.keep == Keep::nothing) return tess::start_balancing(array, experiment.balance);
+  // A distributed strategy is given no snapshot; another one in its place would not be it.
+  if (experiment.keep == Keep::nothing ||
+      tess::balance::is_distributed(experiment.balance.strategy))
+    return tess::start_balancing(array, experiment.balance);
   return tess::start_balancing(array, experiment.balance,
                                noting(experiment.balance, outcome.phases));
 }

@@ -66,7 +66,7 @@ std::vector<std::vector<Interval>> balancing_times(const Outcome& outcome) {
   for (const PeRecord& record : outcome.records)
     n_phases = std::max(n_phases, record.waits_from.size());
   if (n_phases == 0) {
-    double end = 0;
+    double end = outcome.began;
     for (const tess::balance::Round& round : outcome.rounds) {
       const double begin = end + round.phase_seconds;
       end = begin + round.round_seconds;

@@ -1,10 +1,10 @@
 #include "apps/m2m_transfer/input/problem.hpp"
 
-#include "apps/m2m_transfer/input/await_all.hpp"
 #include "apps/m2m_transfer/input/formulas.hpp"
 #include "apps/m2m_transfer/input/lists.hpp"
 #include "m2m/read_mesh.hpp"
 #include "runtime/core/error.hpp"
+#include "runtime/when.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -93,7 +93,7 @@ Task read_meshes(const Request& request, Problem& problem) {
   std::vector<Task> tasks;
   for (std::size_t m = 0; m < problem.meshes.size(); ++m)
     if (m != first) tasks.push_back(read_one(problem, m));
-  co_await await_all(std::move(tasks));
+  co_await tess::when_all(std::move(tasks));
 }
 
 TransferReport report_of(const Problem& problem, const Pair& pair, const Request& request) {

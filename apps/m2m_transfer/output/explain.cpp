@@ -42,7 +42,8 @@ bool is_moving(const Problem& problem) {
 
 std::string explain(const Problem& problem, Output output) {
   const TransferReport& r = problem.reports.front();
-  const bool is_graph = problem.meshes.size() > 2;
+  const bool is_graph =
+      problem.meshes.size() > 2 || problem.pairs.size() > 1 || problem.pairs.front().source != 0;
   std::string out = "this transfer uses\n";
   for (std::size_t m = 0; m < problem.meshes.size(); ++m) {
     const RunMesh& mesh = problem.meshes[m];
@@ -76,7 +77,7 @@ std::string explain(const Problem& problem, Output output) {
     out +=
         "  recovered gradients at the donors' vertices, from two layers of tetrahedra around a "
         "chare\n";
-  if (output == Output::mesh) out += "  ExodusII output\n";
+  if (output == Output::mesh) out += "  a mesh with the values (--out)\n";
 
   out += "it leaves out\n";
   out += "  voxels in empty space, and the search in voxels that only one of the meshes touches\n";

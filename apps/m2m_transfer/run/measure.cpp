@@ -107,7 +107,7 @@ Task measure(Problem& problem, GroupProxy<Gauge> gauge, apps::Progress& progress
     report.seconds.setup = setup;
     report.tally = graph->found()[p].tally;
     report.worst = graph->found()[p].worst;
-    report.searches = graph->searches();
+    report.searches = graph->searches(p);
     report.footprint.peak_memory_bytes = peak.peak_memory_bytes;
     report.footprint.greatest_peak_memory_bytes = peak.greatest_peak_memory_bytes;
   }

@@ -1,7 +1,7 @@
 #include "apps/m2m_transfer/run/meshes.hpp"
 
-#include "apps/m2m_transfer/input/await_all.hpp"
 #include "m2m/placement.hpp"
+#include "runtime/when.hpp"
 
 #include <string>
 #include <utility>
@@ -24,7 +24,7 @@ Task place_together(const Problem& problem, TransferKind kind, std::int32_t n_pa
     tasks.push_back(mesh.mesh ? tess::m2m::place(&*mesh.mesh, options, &placed[m])
                               : tess::m2m::place(mesh.name, options, &placed[m]));
   }
-  co_await await_all(std::move(tasks));
+  co_await tess::when_all(std::move(tasks));
   for (const PlacedMesh& mesh : placed) meshes.push_back(mesh.mesh);
 }
 

@@ -1,6 +1,6 @@
 #include "apps/m2m_transfer/run/steps.hpp"
 
-#include "apps/m2m_transfer/input/await_all.hpp"
+#include "runtime/when.hpp"
 
 #include <algorithm>
 
@@ -30,6 +30,7 @@ GraphRun::GraphRun(Problem& problem, std::vector<DistributedMesh>& meshes, apps:
     transfers_.emplace_back(meshes[pair.source], meshes[pair.target], options);
   found_.resize(problem.pairs.size());
   seconds_.resize(problem.pairs.size());
+  searches_.resize(problem.pairs.size());
   motions_.resize(meshes.size());
   for (std::size_t m = 0; m < meshes.size(); ++m) origin_.push_back(m);
 }
@@ -39,12 +40,12 @@ Task GraphRun::search() {
   tasks.reserve(transfers_.size());
   for (std::size_t p = 0; p < transfers_.size(); ++p)
     tasks.push_back(search_one(transfers_[p], found_[p]));
-  co_await await_all(std::move(tasks));
+  co_await tess::when_all(std::move(tasks));
   for (std::size_t p = 0; p < transfers_.size(); ++p) {
     seconds_[p].broad = found_[p].broad;
     seconds_[p].narrow = found_[p].narrow;
+    ++searches_[p];
   }
-  ++searches_;
 }
 
 Task GraphRun::steps() {
@@ -87,10 +88,11 @@ Task GraphRun::search_again() {
     tasks.push_back(search_one(transfers_[p], found_[p]));
     pairs.push_back(p);
   }
-  co_await await_all(std::move(tasks));
-  for (const std::size_t p : pairs)
+  co_await tess::when_all(std::move(tasks));
+  for (const std::size_t p : pairs) {
     keep_least(seconds_[p].again, found_[p].broad + found_[p].narrow);
-  ++searches_;
+    ++searches_[p];
+  }
 }
 
 Task GraphRun::apply_levels(bool audited) {
@@ -105,7 +107,7 @@ Task GraphRun::apply_levels(bool audited) {
     std::vector<Task> tasks;
     tasks.reserve(pairs.size());
     for (const std::size_t p : pairs) tasks.push_back(apply(p));
-    co_await await_all(std::move(tasks));
+    co_await tess::when_all(std::move(tasks));
     for (const std::size_t p : pairs)
       origin_[problem_.pairs[p].target] = origin_[problem_.pairs[p].source];
     if (audited)

@@ -42,7 +42,7 @@ class GraphRun {
   [[nodiscard]] const std::vector<PairAudit>& audits() const { return audits_; }
   [[nodiscard]] const std::vector<SearchSummary>& found() const { return found_; }
   [[nodiscard]] const std::vector<PhaseSeconds>& seconds() const { return seconds_; }
-  [[nodiscard]] std::int32_t searches() const { return searches_; }
+  [[nodiscard]] std::int32_t searches(std::size_t pair) const { return searches_[pair]; }
 
  private:
   Task move_meshes();
@@ -61,7 +61,7 @@ class GraphRun {
   std::vector<PairAudit> audits_;    // empty: none are wanted
   std::vector<std::size_t> origin_;  // per mesh: the one whose values it has, as they were sampled
   std::vector<std::vector<RigidMotion>> motions_;  // per mesh, made so far
-  std::int32_t searches_ = 0;
+  std::vector<std::int32_t> searches_;             // per pair
 };
 
 }  // namespace m2m_transfer

@@ -130,6 +130,18 @@ void add_thin(std::vector<Case>& all, const TetMesh& source, const TetMesh& targ
   for (const double height : {1e-3, 1e-6, 1e-9, 1e-12})
     all.push_back(with_parameter(linear_case("slivers", with_slivers(source, height), target),
                                  "height", height));
+  // Points just off a side on which flat tetrahedra lie. Rounding makes these slivers.
+  const TetMesh flat = mapped(with_flat_side(6), turned);
+  for (const double gap : {0.0, 1e-15, 1e-12}) {
+    const auto lowered = [&](Point p) {
+      if (p[2] == 0) p[2] = -gap;
+      return turned(p);
+    };
+    all.push_back(with_parameter(
+        linear_case("flat tetrahedra on a side", flat, mapped(kuhn_mesh({7}), lowered)), "gap",
+        gap));
+    if (gap == 0) all.back().outside = std::nullopt;
+  }
 }
 
 void add_boundaries(std::vector<Case>& all, const TetMesh& source, const TetMesh& target) {

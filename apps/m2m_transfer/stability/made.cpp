@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <numeric>
 
 namespace m2m_transfer::stability {
@@ -56,6 +57,27 @@ TetMesh with_slivers(const TetMesh& mesh, double height) {
     }
   }
   return out;
+}
+
+TetMesh with_flat_side(int n) {
+  TetMesh mesh = kuhn_mesh({n});
+  std::map<Point, VertexId> id;
+  for (std::size_t v = 0; v < mesh.n_points(); ++v) id[mesh.points[v]] = id_of(v);
+  std::vector<Tet> flat;
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j) {
+      const auto at = [&](int x, int y) {
+        return id.at({static_cast<double>(x) / n, static_cast<double>(y) / n, 0});
+      };
+      flat.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)});
+    }
+  mesh.tets.insert(mesh.tets.begin(), flat.begin(), flat.end());
+  return mesh;
+}
+
+Point turned(const Point& p) {
+  return {0.36 * p[0] + 0.48 * p[1] + 0.8 * p[2], -0.8 * p[0] + 0.6 * p[1],
+          -0.48 * p[0] - 0.64 * p[1] + 0.6 * p[2]};
 }
 
 TetMesh coarse_beside_fine() {

@@ -19,6 +19,12 @@ namespace m2m_transfer::stability {
 /// of the four is a sliver.
 [[nodiscard]] TetMesh with_slivers(const TetMesh& mesh, double height);
 
+/// The mesh kuhn:n with a flat tetrahedron on every square of its lower side, listed before the
+/// others.
+[[nodiscard]] TetMesh with_flat_side(int n);
+/// Turned about two axes, so that no side of a box is aligned with an axis; rounded.
+[[nodiscard]] Point turned(const Point& p);
+
 /// A coarse box beside a fine one: the vertices of the fine one lie on faces and edges of the
 /// coarse one.
 [[nodiscard]] TetMesh coarse_beside_fine();

@@ -23,6 +23,7 @@ struct Study {
   std::vector<TransferReport>
       reports;              ///< all with the same fields; sorted by kind, then by policy
   std::int32_t repeat = 1;  ///< transfers per report; the fastest counts
+  bool is_checked = false;  ///< checks() hold for it
 };
 
 /// The meshes of a ladder: "kuhn:8,16@0.2" and "a.msh,b.msh" have two. Throws Error (bad_argument)

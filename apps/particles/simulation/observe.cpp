@@ -71,7 +71,7 @@ void note_tunnelled(const Stage& stage, const std::vector<Object>& at_begin,
       if (flock.tunnelled[p] != 0) continue;
       path_segments(p, before.position(p), waypoints, flock.motion.position(p), segments);
       for (const tess::dn::PathSegment& segment : segments)
-        if (any_piece(at_begin[o].frame, stage.scene.dt, segment, passes)) flock.tunnelled[p] = 1;
+        if (any_piece(at_begin[o], stage.scene.dt, segment, passes)) flock.tunnelled[p] = 1;
     }
   }
 }

@@ -87,6 +87,7 @@ Samples samples_of(const Subject& subject, std::size_t n) {
 
 void compare(const Field& field, LookUp kind, const Samples& samples, StudyRow& row) {
   const std::size_t n = samples.distance.size();
+  if (n == 0) return;  // not measured
   std::vector<float> distance(n), nx(n), ny(n), nz(n);
   look_up(field, kind, {samples.x, samples.y, samples.z}, {distance, nx, ny, nz});
   RootMeanSquare distances, angles;

@@ -39,7 +39,7 @@ struct Bounce {
 
 /// The object and its exact reference.
 struct Subject {
-  const SceneObject& object;
+  SceneObject object;
   tess::dn::Bvh tree;
   std::vector<Bounce> bounces;
   double thickness;

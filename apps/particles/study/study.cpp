@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cmath>
+#include <utility>
 
 namespace particles {
 namespace {
@@ -33,12 +34,25 @@ void time_crowd(const Object* object, const Rules& rules, const Subject& subject
   time_steps(object, rules, 0.1 * subject.thickness / n_steps, n_steps, subject, n, row);
 }
 
+/// The object around the origin: places that are compared in float keep their digits.
+SceneObject centred(SceneObject object) {
+  const Vec3 centre = bounds(object.surface).centre();
+  for (Vec3& v : object.surface.vertices) v = v - centre;
+  return object;
+}
+
+Subject around(SceneObject object) {
+  Bvh tree(object.surface);
+  const double thickness = object.thickness;
+  return {std::move(object), std::move(tree), {}, thickness};
+}
+
 class Study {
  public:
   Study(const SceneObject& object, const StudyOptions& options, const std::string& scene)
-      : options_(options), subject_{object, Bvh(object.surface), {}, object.thickness} {
-    subject_.bounces =
-        exact_bounces(object.surface, subject_.tree, options.n_bounces, 0.8 * object.thickness, 11);
+      : options_(options), subject_(around(centred(object))) {
+    subject_.bounces = exact_bounces(subject_.object.surface, subject_.tree, options.n_bounces,
+                                     0.8 * object.thickness, 11);
     if (subject_.bounces.empty())
       tess::fail(tess::ErrorCode::bad_mesh, scene,
                  ": objects[0].shape: no triangle can be met from its front; turn the triangles");

@@ -26,6 +26,7 @@ void Distances::fill_block(Field& field, int i, int j, int k) const {
   const Grid& grid = field.grid;
   PointBlock block;
   const double limit2 = field.thickness * field.thickness * just_beyond;
+  const auto far = static_cast<double>(cut_off(field.thickness));
   std::size_t lane = 0;
   for (int dk = 0; dk < block_edge; ++dk)
     for (int dj = 0; dj < block_edge; ++dj)
@@ -45,7 +46,7 @@ void Distances::fill_block(Field& field, int i, int j, int k) const {
         const auto at = grid.index(x, y, z);
         const PreparedTriangle& triangle = tree_.triangle(place);
         const Vec3 offset = offset_from(triangle, grid.centre(x, y, z));
-        const double distance = std::min(norm(offset), field.thickness);
+        const double distance = std::min(norm(offset), far);
         const double sign = field.distance[at] < 0 ? -1 : 1;
         field.distance[at] = static_cast<float>(sign * distance);
         if (field.normal.empty()) continue;
@@ -69,7 +70,7 @@ void Distances::fill_shelf(Field& field, int first) const {
   if (inside_)
     for (int k = first; k < last; ++k)
       inside_->layer(k, std::span(inside).subspan(grid.index(0, 0, k - first)));
-  const auto far = static_cast<float>(field.thickness);
+  const float far = cut_off(field.thickness);
   for (std::size_t at = 0; at < size; ++at)
     field.distance[begin + at] = inside[at] != 0 ? -far : far;
   if (!field.normal.empty()) std::fill_n(&field.normal[begin], size, no_normal);

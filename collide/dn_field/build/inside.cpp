@@ -23,9 +23,14 @@ struct Range {
 };
 
 Range voxels_between(double low, double high, double origin, double cell, int n) {
-  const double first = std::ceil((low - origin) / cell), last = std::floor((high - origin) / cell);
-  return {static_cast<int>(std::clamp(first, 0.0, 1.0 * n)),
-          static_cast<int>(std::clamp(last, -1.0, n - 1.0))};
+  // side() compares with the centres themselves, from which the quotients differ by rounding.
+  const double first = std::ceil((low - origin) / cell) - 1,
+               last = std::floor((high - origin) / cell) + 1;
+  Range range{static_cast<int>(std::clamp(first, 0.0, 1.0 * n)),
+              static_cast<int>(std::clamp(last, -1.0, n - 1.0))};
+  while (range.first <= range.last && origin + cell * range.first < low) ++range.first;
+  while (range.first <= range.last && origin + cell * range.last > high) --range.last;
+  return range;
 }
 
 }  // namespace

@@ -30,10 +30,10 @@ Vec3 to_vec3(const Normal& n) {
 }
 
 /// The distance of a voxel with its centre at (x, y, z) from the cell's middle.
-float distance_to(const Plane& plane, float x, float y, float z, float thickness) {
+float distance_to(const Plane& plane, float x, float y, float z, float cut_off) {
   const float d = plane.distance + (plane.normal.x * x + plane.normal.y * y + plane.normal.z * z);
-  const float above = d > -thickness ? d : -thickness;
-  return above < thickness ? above : thickness;
+  const float above = d > -cut_off ? d : -cut_off;
+  return above < cut_off ? above : cut_off;
 }
 
 class Compressor {
@@ -44,7 +44,8 @@ class Compressor {
         layout_(layout),
         shift_(shift),
         cell_(static_cast<float>(field.grid.cell)),
-        thickness_(static_cast<float>(field.thickness)) {}
+        thickness_(static_cast<float>(field.thickness)),
+        cut_off_(cut_off(field.thickness)) {}
 
   /// Empty if entries do not meet the bound even voxel by voxel.
   [[nodiscard]] std::optional<Planes> run();
@@ -71,7 +72,7 @@ class Compressor {
   ErrorBound bound_, off_{}, measured_{};
   EntryLayout layout_;
   int shift_;
-  float cell_, thickness_;
+  float cell_, thickness_, cut_off_;
   std::vector<Voxel> voxels_;
 };
 
@@ -160,7 +161,7 @@ bool Compressor::fits(std::array<int, 3> low, int s, std::uint32_t& entry) {
   const Plane made = plane(entry);
   const Vec3 made_normal = to_vec3(made.normal);
   for (const Voxel& v : voxels_) {
-    const auto d = static_cast<double>(distance_to(made, v.x, v.y, v.z, thickness_));
+    const auto d = static_cast<double>(distance_to(made, v.x, v.y, v.z, cut_off_));
     const double off = std::abs(d - v.distance);
     if (!(off <= bound_.distance)) return false;  // also NaN
     off_.distance = std::max(off_.distance, off);

@@ -13,7 +13,7 @@ struct PlaneSampler {
   const std::uint32_t* block = nullptr;
   const std::uint32_t* entry = nullptr;
   EntryLayout layout;
-  float cell = 1, thickness = 0;
+  float cell = 1, cut_off = 0;
   int e = 2, row = 1, layer = 1;  ///< of blocks
   int n[3] = {0, 0, 0};
 };
@@ -25,7 +25,7 @@ inline PlaneSampler plane_sampler_of(const Field& field) {
           planes.entry.data(),
           planes.layout,
           static_cast<float>(field.grid.cell),
-          static_cast<float>(field.thickness),
+          cut_off(field.thickness),
           planes.block_shift,
           nx,
           nx * ny,
@@ -65,7 +65,7 @@ inline Stored planes_at(const PlaneSampler& field, const Voxel& voxel) {
   };
   const F3& n = plane.normal;
   const F d = plane.distance + (n.x * off(li) + n.y * off(lj) + n.z * off(lk));
-  plane.distance = min(max(d, all(-field.thickness)), all(field.thickness));
+  plane.distance = min(max(d, all(-field.cut_off)), all(field.cut_off));
   return plane;
 }
 

@@ -1,5 +1,6 @@
 #include "collide/dn_field/step/continuous_collision.hpp"
 
+#include "collide/dn_field/path.hpp"
 #include "collide/dn_field/step/pose.hpp"
 
 #include <algorithm>
@@ -231,6 +232,26 @@ void take_along(const Scene& scene, const Contact& contact, L touches, D f, D3& 
   }
 }
 
+/// Waypoints of the particles that take_along() moves, on arcs around the object's origin.
+void keep_arcs(const Scene& scene, const Contact& contact, L touches, D f, D3 x,
+               std::span<const Untraced> from, Scratch& scratch) {
+  if (!scratch.keeps_waypoints) return;
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    if (touches[i] == 0) continue;
+    const std::size_t particle = from[i].particle;
+    scratch.waypoints.push_back({particle, f[i], Vec3{x.x[i], x.y[i], x.z[i]}});
+    const PlacedObject& object = scene.objects[static_cast<std::size_t>(contact.object[i])];
+    const D3 seen = Pose(object, f).seen(x);
+    const int n =
+        1 + static_cast<int>((1 - f[i]) * static_cast<double>(object.spin) / straight_turn);
+    for (int arc = 1; arc < n; ++arc) {
+      const double part = f[i] + (1 - f[i]) * arc / n;
+      const D3 at = Pose(object, all(part)).place(seen);
+      scratch.waypoints.push_back({particle, part, Vec3{at.x[i], at.y[i], at.z[i]}});
+    }
+  }
+}
+
 /// Traces at most a vector of particles.
 void trace_vector(const Scene& scene, std::span<const Untraced> from, const ParticleSpan& particles,
                   Scratch& scratch) {
@@ -282,10 +303,12 @@ void trace_vector(const Scene& scene, std::span<const Untraced> from, const Part
     way = select(flies, rest_way, way);
     end = select(flies, w1, end);
     if (bounce + 1 == max_bounces) {
+      keep_arcs(scene, contact, flies, 1.0 - rest, x, from, scratch);
       take_along(scene, contact, flies, 1.0 - rest, x, start - u, end);
       rest = only(~flies, rest);
+    } else {
+      keep_waypoints(flies);
     }
-    keep_waypoints(flies);
   }
   x = fma(rest, way, x);
   const D work = dot(all(c.acceleration), x - x0 - way0);

@@ -50,6 +50,7 @@ class GmshFields : public FieldReader {
     std::vector<double> values(list.size() * wanted.n_components);
     std::vector<bool> has(list.size());
     const int step_tag = std::next(time_of_.begin(), static_cast<std::ptrdiff_t>(step))->first;
+    check_times(field, step_tag, times_[step]);
     for (const Section& section : sections_[field])
       if (section.step == step_tag) read(file, section, wanted, places, values, has);
     const auto missing = std::find(has.begin(), has.end(), false);
@@ -71,7 +72,21 @@ class GmshFields : public FieldReader {
     std::size_t begin = 0;  // of the values, in the file
     std::size_t n = 0;      // rows
     int step = 0;           // gmsh's number of the step
+    double time = 0;
   };
+
+  /// The steps of the file have the times of the view that comes first. A view of one step may have
+  /// any time, since many writers give none.
+  void check_times(std::size_t field, int step, double listed) const {
+    const std::vector<Section>& sections = sections_[field];
+    if (std::ranges::all_of(sections, [&](const Section& s) { return s.step == sections[0].step; }))
+      return;
+    for (const Section& section : sections)
+      if (section.step == step && section.time != listed)
+        fail(ErrorCode::bad_value, path_, ": variable '", fields_[field].name, "' has the time ",
+             section.time, " at gmsh's step ", step, ", where another view has ", listed,
+             "; write views of different times to files of their own");
+  }
 
   /// The numbers of the steps at which a field has values, as they are counted in the file.
   [[nodiscard]] std::string steps_of(std::size_t field) const {
@@ -131,7 +146,7 @@ class GmshFields : public FieldReader {
     }
     if (fields_[field].n_components != each)
       file.damaged("'", name, "' has ", fields_[field].n_components, " components and ", each);
-    sections_[field].push_back({begin, n_rows, step});
+    sections_[field].push_back({begin, n_rows, step, time});
     time_of_.try_emplace(step, time);
   }
   static const char* end_of(FieldPlace place) {

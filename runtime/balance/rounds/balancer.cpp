@@ -258,6 +258,7 @@ Task Balancer::place_again() {
   const std::uint64_t n_known = co_await recalled;
   if (n_known != 0) {
     co_await round(Others::fixed);
+    measured_.round_ends();
   } else {
     co_await forget_all();
   }
@@ -408,7 +409,7 @@ Task Balancer::distributed_round(Others others) {
   round.n_unknown = before.n_unknown;
   round.n_moved = outcome.n_moved;
   round.moved_bytes = outcome.moved_bytes;
-  round.before = average > 0 ? before.slowest / average : 1;
+  round.before = before.max_over_average();
   round.predicted = average > 0 ? outcome.phase.slowest / average : 1;
   coordinator_->record_distributed(std::move(round));
 }

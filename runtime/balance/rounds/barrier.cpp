@@ -27,7 +27,7 @@ void Barrier::attach(Collection& array) {
   for (Element* element : array.elements()) {
     if (element == nullptr) continue;
     SyncState& sync = Collection::make_record(*element).sync;
-    if (!sync.known) join(sync, 0);
+    if (sync.entry == SyncEntry::none) join(sync, 0);
     tree_.enter(sync.next);
   }
   for (Element* element : array.elements()) {
@@ -49,18 +49,17 @@ void Barrier::detach() {
 }
 
 void Barrier::join(SyncState& sync, std::uint32_t round) {
-  sync.known = true;
-  sync.member = true;
+  sync.entry = SyncEntry::member;
   sync.next = round;
   tree_.add_member(round);
 }
 
 Barrier::Entry Barrier::entered(Element& element) {
   SyncState& sync = sync_of(element);
-  const bool created = !sync.known && Collection::never_moved(element);
+  const bool first_here = sync.entry == SyncEntry::none;
+  const bool created = first_here && Collection::never_moved(element);
   if (created && n_resumed_ != tree_.joins_at()) return Entry::newcomer;
-  const bool late = !sync.known && !created;
-  if (!sync.known) join(sync, created ? n_resumed_ : 0);
+  if (first_here) join(sync, created ? n_resumed_ : 0);
   tree_.enter(sync.next);
   if (sync.phase == SyncPhase::waits) {
     if (sync.next == 0) {
@@ -69,12 +68,12 @@ Barrier::Entry Barrier::entered(Element& element) {
       wake(element);
     }
   }
-  return late ? Entry::late : Entry::usual;
+  return first_here && !created ? Entry::late : Entry::usual;
 }
 
 std::uint32_t Barrier::hold(Element& element) {
   Collection::hold(element);
-  sync_of(element).known = true;
+  sync_of(element).entry = SyncEntry::held;
   newcomers_.emplace(n_tickets_, &element);
   return n_tickets_++;
 }
@@ -85,7 +84,7 @@ void Barrier::joins(std::uint32_t ticket, std::uint32_t round) {
   Element& element = *at->second;
   newcomers_.erase(at);
   SyncState& sync = sync_of(element);
-  sync.member = true;
+  sync.entry = SyncEntry::member;
   sync.next = round;
   tree_.enter(round);
   if (sync.phase == SyncPhase::waits) contribute(sync);
@@ -100,14 +99,15 @@ void Barrier::left(Element& element) {
 
 void Barrier::destroyed(Element& element) {
   const SyncState& sync = sync_of(element);
-  if (!sync.known) return;  // balancing has not started here, nor where it came from
+  if (sync.entry == SyncEntry::none)
+    return;  // balancing has not started here, nor where it came from
   tree_.remove_member(sync.next);
   tree_.advance();
 }
 
 void Barrier::at_sync(Element& element) {
   SyncState& sync = sync_of(element);
-  if (sync.member) contribute(sync);  // else joins() does
+  if (sync.entry == SyncEntry::member) contribute(sync);  // else joins() does
 }
 
 void Barrier::contribute(SyncState& sync) {
@@ -123,7 +123,8 @@ void Barrier::resume(std::uint32_t round) {
   for (Element* element : array_->elements()) {
     if (element == nullptr) continue;
     const SyncState& sync = sync_of(*element);
-    if (sync.member && sync.phase == SyncPhase::waits && sync.next <= n_resumed_) wake(*element);
+    const bool waits = sync.entry == SyncEntry::member && sync.phase == SyncPhase::waits;
+    if (waits && sync.next <= n_resumed_) wake(*element);
   }
 }
 
@@ -139,7 +140,7 @@ std::string Barrier::missing_before(std::uint32_t round) const {
   for (const Element* element : array_->elements()) {
     if (element == nullptr) continue;
     const SyncState& sync = Collection::record_of(*element)->sync;
-    if (!sync.member || sync.next >= round) continue;
+    if (sync.entry != SyncEntry::member || sync.next >= round) continue;
     if (++n <= 5) out += (n > 1 ? ", " : "") + element_text(*element);
   }
   if (n > 5) out += text(" and ", n - 5, " more");

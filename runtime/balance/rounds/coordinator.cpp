@@ -47,9 +47,15 @@ Coordinator::Coordinator(BalanceOptions options, Strategy users)
 }
 
 bool Coordinator::worth(const PhaseSums& phase) {
+  const bool collects = loses_enough(phase);
+  if (!collects && predictor_) predictor_->pass();  // decide() records the others
+  return collects;
+}
+
+bool Coordinator::loses_enough(const PhaseSums& phase) {
   if (phase.n_measured == 0) return false;
   if (judges_) return true;
-  const double average = phase.average_time();
+  const double average = phase.known_average();
   if (std::exchange(measures_distributed_, false) && average > 0)
     history_.back().measured = phase.slowest / average;
   const double above_floor = std::max(0.0, phase.slowest - (floor_ + noise) * average);
@@ -85,13 +91,14 @@ void Coordinator::judge_last_round(const Snapshot& measured, double now) {
 
 Assignment Coordinator::choose(const Snapshot& measured, Round& round) {
   const bool automatic = options_.when == BalanceWhen::automatic;
-  const double now = round.before * average_time(measured);
   if (judges_) {
     judges_ = false;
     floor_ = round.before;
     if (history_.back().gain < -noise) {
       round.rolled_back = true;
-      return honour(measured, before_last_round(measured));
+      const Assignment before = before_last_round(measured);
+      floor_ = measure(measured, before).max_over_average;
+      return honour(measured, before);
     }
     round.skipped = true;
     return measured.elements.pe;
@@ -106,7 +113,7 @@ Assignment Coordinator::choose(const Snapshot& measured, Round& round) {
   round.predicted = measure(expected, wanted).max_over_average;
   const double stays = slowest(expected, expected.elements.pe);
   promised_ = stays > 0 ? 1 - slowest(expected, wanted) / stays : 0;
-  if (automatic && slowest(expected, wanted) >= std::min(now, stays)) {
+  if (automatic && slowest(expected, wanted) >= stays) {
     floor_ = round.before;
     round.skipped = true;
     return measured.elements.pe;

@@ -57,6 +57,7 @@ class Coordinator {
  private:
   using Placement = boost::unordered_flat_map<ElementKey, PeId, ElementKeyHash>;
 
+  [[nodiscard]] bool loses_enough(const PhaseSums& phase);
   [[nodiscard]] Assignment before_last_round(const Snapshot& measured) const;
   void judge_last_round(const Snapshot& measured, double now);
   [[nodiscard]] Assignment choose(const Snapshot& measured, Round& round);

@@ -26,6 +26,7 @@ using detail::ReductionHostOfCollection;
 using detail::ReductionTree;
 using detail::Registry;
 using detail::send_to_collection;
+using detail::SyncEntry;
 using detail::SyncPhase;
 using detail::SyncState;
 using detail::Track;

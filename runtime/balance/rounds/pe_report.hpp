@@ -54,6 +54,9 @@ struct PhaseSums {
   [[nodiscard]] double mean_load() const {
     return n_measured == 0 ? 0 : load / static_cast<double>(n_measured);
   }
+  /// The average of what is known, to compare `slowest` with.
+  [[nodiscard]] double known_average() const { return work / speed; }
+  [[nodiscard]] double max_over_average() const { return work > 0 ? slowest / known_average() : 1; }
   /// The seconds that every PE would need if work could be divided freely.
   [[nodiscard]] double average_time() const {
     return (work + mean_load() * static_cast<double>(n_unknown)) / speed;

@@ -201,6 +201,7 @@ void ArrayOf<Index>::end_element(Indexed& element) {
   unlist(element);
   ++n_departures_;
   table_.at(element.index_).set_unknown();
+  counts_no_more(element);
   destroy(element);
 }
 
@@ -216,7 +217,6 @@ void ArrayOf<Index>::destroy_here(Indexed& element) {
   const std::uint32_t next = element.state_.next_reduction;
   unlist(element);
   ++n_departures_;
-  table_.at(index).set_unknown();
   end_wait(element);
   end_memberships(element);
   if (watcher() != nullptr) [[unlikely]] {
@@ -224,15 +224,20 @@ void ArrayOf<Index>::destroy_here(Indexed& element) {
   } else {
     note_unwatched_end(element);
   }
+  // The destructor may send to its own index or insert there again.
+  const bool is_home = home(index) == pe_.id();
+  if (is_home) {
+    table_.at(index).set(IndexState::destroyed, pe_.id(), version);
+  } else {
+    table_.at(index).set_unknown();
+    ++n_destroyed_[index];
+    table_.at(index).park(Parked::destroyed);
+  }
+  counts_no_more(element);
   destroy(element);
   reductions().remove_member(next);
   reductions().advance();
-  if (home(index) == pe_.id()) {
-    table_.at(index).set(IndexState::destroyed, pe_.id(), version);
-    return;
-  }
-  ++n_destroyed_[index];
-  table_.at(index).park(Parked::destroyed);
+  if (is_home) return;
   send_to_collection<&destroy_report_arrives, Traffic::location>(
       *this, home(index), DestroyReport{index, version, pe_.id()});
 }

@@ -29,6 +29,7 @@ struct SectionCreate {
 struct SectionStart {
   SectionId section;
   SectionCall call;
+  [[nodiscard]] std::int64_t priority() const { return call.numbered.priority(); }
   template <class Ar>
   void serialize(Ar& ar) {
     ar(section, call);
@@ -60,6 +61,7 @@ struct SectionMulticast {
   SectionId section;
   std::uint64_t generation = 0;
   SectionCall call;
+  [[nodiscard]] std::int64_t priority() const { return call.numbered.priority(); }
   template <class Ar>
   void serialize(Ar& ar) {
     ar(section, generation, call);

@@ -128,6 +128,7 @@ class Array final : public ArrayOf<typename C::Index> {
       C& chare = static_cast<C&>(element);
       auto* message = Awakening<C>::make(this->pe_, this->id(), own(chare).index_);
       Base::continue_wait(own(chare), *message, message->led_by);
+      message->demand = Demand::member;  // it brings no destroyed element back
       this->post(message);
     } else {
       Base::resume(element);
@@ -214,7 +215,12 @@ class Array final : public ArrayOf<typename C::Index> {
     }
   }
   [[nodiscard]] PeId home_of_saved(Reader ar) const override {
-    return OnePerPe<C> ? this->pe_.id() : home(ar.template take<Index>());
+    const auto index = ar.template take<Index>();
+    if constexpr (OnePerPe<C>) {
+      return PeId{index.x % this->pe_.n_pes()};
+    } else {
+      return home(index);
+    }
   }
   [[nodiscard]] DeadLetters dead_letters() const override {
     if constexpr (requires { C::dead_letters; }) {
@@ -227,11 +233,7 @@ class Array final : public ArrayOf<typename C::Index> {
  private:
   /// What place() of the class gives.
   [[nodiscard]] PeId placed(const Index& index) const {
-    try {
-      return C::place(index, this->pe_.n_pes());
-    } catch (...) {
-      this->pe_.rethrow_kept();
-    }
+    return call_user([&] { return C::place(index, this->pe_.n_pes()); });
   }
   static std::unique_ptr<Collection> make(Pe& pe, CollectionId id, const Range& range) {
     return std::make_unique<Array>(pe, id, range);

@@ -17,10 +17,16 @@ enum class SyncPhase : std::uint8_t {
   resumes,  ///< the message that calls resume_from_sync() is under way
 };
 
+/// Whether a barrier has seen an element.
+enum class SyncEntry : std::uint8_t {
+  none,
+  held,    ///< it waits until the coordinator says which round it joins
+  member,  ///< it joins round SyncState::next
+};
+
 struct SyncState {
   SyncPhase phase = SyncPhase::runs;
-  bool known = false;        ///< a barrier has seen the element
-  bool member = false;       ///< it is known which round it joins
+  SyncEntry entry = SyncEntry::none;
   std::uint32_t next = 0;    ///< for a member: the next round that it reaches
   EpochId epoch{};           ///< the epoch that the wait belongs to
   std::uint32_t led_by = 0;  ///< the broadcast that led to its wait

@@ -34,6 +34,9 @@ struct EndRecord {
   void operator()(BalanceRecord* record) const;
 };
 
+/// In place of ElementState::created_after, while the element's destructor runs.
+inline constexpr std::uint32_t destroyed_now = ~std::uint32_t{0};
+
 /// The part of an element that migrates in addition to the user's members.
 struct ElementState {
   Version version{};

@@ -12,12 +12,14 @@ namespace tess::detail {
 /// Constructs a chare. If the constructor throws, the report names it.
 template <class C, class... Args>
 [[nodiscard]] C* make_chare(Args&&... args) {
-  try {
-    return new C(std::forward<Args>(args)...);
-  } catch (...) {
-    current_pe().note_constructor(name_of_type<C>, {name_of_type<std::decay_t<Args>>...});
-    current_pe().rethrow_kept();
-  }
+  return call_user([&] {
+    try {
+      return new C(std::forward<Args>(args)...);
+    } catch (...) {
+      current_pe().note_constructor(name_of_type<C>, {name_of_type<std::decay_t<Args>>...});
+      throw;
+    }
+  });
 }
 
 }  // namespace tess::detail

@@ -52,11 +52,13 @@ struct ResultOf<Gather, T, Key> : std::type_identity<std::vector<std::pair<Key, 
 
 template <class Op, class T>
 [[nodiscard]] T combined(const Op& op, T a, const T& b) {
-  if constexpr (Finishes<Op, T>) {
-    return op.combine(std::move(a), b);
-  } else {
-    return op(std::move(a), b);
-  }
+  return call_user([&]() -> T {
+    if constexpr (Finishes<Op, T>) {
+      return op.combine(std::move(a), b);
+    } else {
+      return op(std::move(a), b);
+    }
+  });
 }
 template <class Op, class T>
 [[nodiscard]] auto finished(const Op& op, T whole) {

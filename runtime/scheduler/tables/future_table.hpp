@@ -25,6 +25,7 @@ class FutureTable {
   /// Ends the job with a sentence that says why the future is not there.
   [[nodiscard]] void* require(std::uint64_t id);
 
+  [[nodiscard]] bool empty() const { return unused_.size() + 1 == places_.size(); }
   /// The places of all numbers so far are below this one.
   [[nodiscard]] std::uint32_t n_places() const {
     return first_ + static_cast<std::uint32_t>(places_.size());

@@ -29,6 +29,31 @@ TEST_CASE("exact bounces lie on the surface and mirror the velocity", "[particle
   }
 }
 
+TEST_CASE("the study of a mesh far from the origin has the errors of the mesh at the origin",
+          "[particles][study]") {
+  Scene scene = parse_scene(R"({"dt": 1, "steps": 0,
+    "objects": [{"shape": {"sphere": {"radius": 1, "rings": 30}}, "resolution": 24, "thickness": 1}],
+    "emitters": [{"count": 1, "sphere": {"radius": 1}}]})",
+                            "scene.json");
+  StudyOptions options;
+  options.resolutions = {12};
+  options.n_samples = 300;
+  options.n_bounces = 10;
+  options.n_timed = 10;
+  const std::vector<StudyRow> near = study(scene, options);
+  for (Vec3& v : scene.objects[0].surface.vertices) v = v + Vec3{500000, 4000000, 0};
+  const std::vector<StudyRow> far = study(scene, options);
+  int n_compared = 0;
+  for (std::size_t i = 0; i < near.size(); ++i) {
+    if (near[i].part != "field" || near[i].stored != "flat") continue;
+    ++n_compared;
+    CHECK(near[i].distance_error > 0);
+    CHECK(far[i].distance_error == Approx(near[i].distance_error).epsilon(0.01));
+    CHECK(far[i].normal_error == Approx(near[i].normal_error).epsilon(0.01).margin(0.01));
+  }
+  CHECK(n_compared == 9);
+}
+
 TEST_CASE("the study finds the orders of the look-ups, and no particle lost where none may be",
           "[particles][study]") {
   const Scene scene = parse_scene(R"({"dt": 1, "steps": 0,

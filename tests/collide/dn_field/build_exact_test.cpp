@@ -147,8 +147,31 @@ TEST_CASE("a field cut off at its thickness agrees with the whole one within it"
   CHECK(thin.normal.empty());
   int different = 0;
   for (std::size_t at = 0; at < grid.size(); ++at)
-    different += thin.distance[at] != std::clamp(whole.distance[at], -0.25F, 0.25F);
+    different += thin.distance[at] != std::clamp(whole.distance[at], -cut_off(0.25), cut_off(0.25));
   CHECK(different == 0);
+}
+
+TEST_CASE("layers of voxels through rings of vertices have the sign of their place", "[dn_field]") {
+  // The middle layer goes through the equator, up to rounding.
+  struct Case {
+    double radius;
+    int n;
+  };
+  for (const auto [radius, n] : {Case{0.9, 63}, {0.9, 119}, {0.8, 111}, {0.1, 123}, {1, 21}}) {
+    const Surface sphere = make_sphere(radius, 48);
+    const Grid grid = grid_around(bounds(sphere), n, 0.5 * radius);
+    const Field field =
+        build_field(sphere, grid, {Sides::one, Content::distance, 0.5 * radius, {}});
+    int n_inside = 0, wrong = 0;
+    for_each_voxel(grid, [&](std::size_t at, Vec3 p) {
+      const bool inside = norm(p) < 0.97 * radius;
+      n_inside += inside ? 1 : 0;
+      if (inside || norm(p) > radius) wrong += (field.distance[at] < 0) != inside ? 1 : 0;
+    });
+    INFO("radius " << radius << ", " << n << " voxels");
+    CHECK(n_inside > n);
+    CHECK(wrong == 0);
+  }
 }
 
 TEST_CASE("real meshes: spot and env, the sign off the surface is that of the exact winding number",

@@ -34,7 +34,8 @@ TEST_CASE("distances to any triangles, degenerate ones too, are those of brute f
         build_field(surface, grid, {Sides::two, Content::distance_and_normal, thickness, {}});
     double worst = 0;
     for_each_voxel(grid, [&](std::size_t at, Vec3 p) {
-      const double truth = std::min(brute_force(surface, p), thickness);
+      const double truth =
+          std::min(brute_force(surface, p), static_cast<double>(cut_off(thickness)));
       worst = std::max(worst, std::abs(static_cast<double>(field.distance[at]) - truth));
     });
     INFO("seed " << seed);

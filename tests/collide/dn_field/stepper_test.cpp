@@ -1,6 +1,7 @@
 #include "collide/dn_field/stepper.hpp"
 
 #include "collide/dn_field/build_field.hpp"
+#include "collide/dn_field/compressed.hpp"
 #include "collide/dn_field/made_field.hpp"
 #include "collide/dn_field/shapes.hpp"
 #include "runtime/core/error.hpp"
@@ -309,6 +310,33 @@ TEST_CASE("objects that cannot serve are refused with a reason", "[dn_field][rul
   CHECK_NOTHROW(validate(rules, {&object, 1}));
   object.frame.velocity.x = std::nan("");
   CHECK_THROWS_AS(validate(rules, {&object, 1}), tess::Error);
+}
+
+TEST_CASE("a rule may reach as far as the field is thick, and does not act beyond",
+          "[dn_field][step]") {
+  const Surface sphere = make_sphere(1, 20);
+  const Grid grid = grid_around(bounds(sphere), 24, 1);
+  for (const double thickness : {0.4, 0.45, 0.5, 0.7, 0.9}) {
+    const Field flat =
+        build_field(sphere, grid, {Sides::one, Content::distance_and_normal, thickness, {}});
+    CHECK(flat.thickness == thickness);
+    const Field compressed = compress(flat, {0.02, 0.2});
+    for (const Field* field : {&flat, &compressed})
+      for (const double scale : {1.0, 1.3, 0.7}) {
+        Object object{field, {}};
+        object.frame.scale = scale;
+        Rules rules;
+        rules.look_up = LookUp::tangent;
+        rules.surface_drag = SurfaceDrag{50, scale * thickness};
+        CHECK_NOTHROW(validate(rules, {&object, 1}));
+        if (field == &compressed) continue;  // its distances are off by up to its bound
+        // Within the grid, beyond the thickness.
+        Particles particles;
+        particles.push_back({scale * (1.05 + thickness), 0, 0}, {0, 0.01, 0});
+        make_stepper(rules, 0.1).run(particles.span(), {&object, 1}, 0);
+        CHECK(particles.velocity(0).y == 0.01);
+      }
+  }
 }
 
 }  // namespace

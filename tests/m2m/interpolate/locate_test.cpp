@@ -65,6 +65,50 @@ TEST_CASE("a tetrahedron without volume holds only its corners", "[m2m][locate]"
   CHECK_FALSE(locate({0.25, 0, 0.25}, twice).has_value());
 }
 
+TEST_CASE("a point beside a nearly flat tetrahedron snaps without extrapolating", "[m2m][locate]") {
+  tess::Random random(5);
+  int n_snapped = 0, n_to_flattest = 0;
+  for (int k = 0; k < 4000; ++k) {
+    const double height = k % 4 == 0 ? 0 : std::pow(10, -17 + 14 * random.unit());
+    const double above = std::pow(10, -16 + 5 * random.unit());
+    // On a slanted plane, whose coordinates are rounded.
+    const auto at = [](double x, double y, double z) {
+      return Point{0.36 * x + 0.48 * y + 0.8 * z, -0.8 * x + 0.6 * y,
+                   -0.48 * x - 0.64 * y + 0.6 * z};
+    };
+    const std::array<Point, 4> corners{at(0, 0, 0), at(1, 0, 0), at(0.2, 1, 0), at(1, 1, -height)};
+    const Point p = at(random.unit(), random.unit(), above);
+    const auto found = locate(p, corners);
+    if (found && found->status == Status::snapped) {
+      ++n_snapped;
+      if (height < 1e-15) ++n_to_flattest;
+      const auto [least, most] = std::minmax_element(found->weights.begin(), found->weights.end());
+      REQUIRE(*least >= -1e-6);
+      REQUIRE(*most <= 1 + 3e-6);
+      Point there{};
+      for (std::size_t i = 0; i < 4; ++i)
+        for (std::size_t axis = 0; axis < 3; ++axis)
+          there[axis] += found->weights[i] * corners[i][axis];
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        REQUIRE(std::abs(there[axis] - p[axis]) <= 1.001 * found->distance + 1e-14);
+    }
+    // The same at scales whose squared areas leave the range of double.
+    for (const int exponent : {-260, 300}) {
+      const auto scaled = [&](Point q) {
+        for (double& x : q) x = std::ldexp(x, exponent);
+        return q;
+      };
+      std::array<Point, 4> there = corners;
+      for (Point& corner : there) corner = scaled(corner);
+      const auto again = locate(scaled(p), there);
+      REQUIRE(again.has_value() == found.has_value());
+      if (found) REQUIRE(again->weights == found->weights);
+    }
+  }
+  CHECK(n_snapped > 1000);
+  CHECK(n_to_flattest > 200);
+}
+
 TEST_CASE("the sign of a volume is exact even if it is smaller than the rounding error",
           "[m2m][locate]") {
   // q deviates from the line a b by i ulps. The volume has the sign of i, and is far smaller than

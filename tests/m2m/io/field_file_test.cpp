@@ -357,6 +357,8 @@ TEST_CASE("gmsh's data at nodes and elements are read by name and step, in any o
             text_of({"NodeData", "temp", 1.5, 10, rows_of(late, gap)}, binary);
         bytes += legacy ? first + second : second + first;
         bytes += text_of({"NodeData", "a flow", 0.25, 0, rows_of(flow, gap)}, binary);
+        bytes += text_of({"NodeData", "other times", 10, 0, rows_of(early, gap)}, binary);
+        bytes += text_of({"NodeData", "other times", 20, 10, rows_of(late, gap)}, binary);
         bytes += text_of(part, binary);
         const std::string path = scratch.write("fields.msh", bytes);
         const TetMesh read = read_mesh(path);
@@ -373,6 +375,9 @@ TEST_CASE("gmsh's data at nodes and elements are read by name and step, in any o
         CHECK(same(file.vertex_field(read, "temp", 1), late));
         CHECK(same(file.vertex_field(read, "a flow", 0), flow));
         CHECK(file.tet_field(read, "part", 0).values[47] == 47.0 / 3);
+        CHECK_THAT(
+            message_of([&] { (void)file.vertex_field(read, "other times", 1); }),
+            Catch::Contains("has the time 20 at gmsh's step 10, where another view has 1.5"));
         CHECK_THAT(
             message_of([&] { (void)file.vertex_field(read, "a flow", 1); }),
             Catch::Contains("variable 'a flow' has no values at step 1 (time 1.5); choose a step "

@@ -11,6 +11,7 @@
 #include "m2m/mesh_parts.hpp"
 #include "m2m/transfer_kind.hpp"
 #include "runtime/balance.hpp"
+#include "runtime/when.hpp"
 #include "tests/support/resident.hpp"
 
 #include <algorithm>
@@ -294,7 +295,7 @@ Task many_fields() {
       tasks.push_back(back.apply<&Right::out, &Left::in>());
       tasks.push_back(back.apply<&Right::more_out, &Left::more_in>());
     }
-    for (Task& task : tasks) co_await task;
+    co_await when_all(std::move(tasks));
     co_await expect(codes.right, k, true);
     co_await expect(codes.left, k, true);
   }

@@ -8,6 +8,7 @@
 #include "tests/support/catch.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <numeric>
 #include <set>
@@ -70,6 +71,19 @@ TEST_CASE("a linear field has its own values at the corners of all types of elem
       error = std::max(error, std::abs(got[i] - want));
     }
     CHECK(error < 1e-12);
+    // The same values in meshes whose volumes times lengths leave the range of double.
+    const Values values = elements.means(linear_at);
+    for (const int exponent : {-260, 300}) {
+      Elements scaled = elements;
+      for (Point& p : scaled.mesh.points)
+        for (double& x : p) x = std::ldexp(x, exponent);
+      const Values there = scaled.corners(values, CornerLimit::none);
+      double change = 0;
+      for (std::size_t i = 0; i < got.size(); ++i)
+        change = std::max(change, std::abs(there[i] - got[i]));
+      CHECK(change < 1e-12);
+      CHECK(std::ranges::none_of(there, [](double x) { return std::isnan(x); }));
+    }
   }
 }
 

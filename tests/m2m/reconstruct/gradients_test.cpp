@@ -102,6 +102,37 @@ TEST_CASE("gradients follow scale, aspect and place of the mesh", "[m2m][reconst
   check({1, 1, 1e-6}, {0, 0, 0}, 1e-8);
   check({1, 1e-3, 1e3}, {0, 0, 0}, 1e-8);
   check({1, 1, 1}, {1e6, -1e6, 1e6}, 1e-7);
+  check({1, 1, 1e-12}, {0, 0, 0}, 1e-8);
+}
+
+TEST_CASE("vertices that nearly coincide do not spoil gradients", "[m2m][reconstruct]") {
+  // A tetrahedron of each vertex is cut at a point very near to it.
+  for (const double distance : {1e-8, 1e-12, 1e-15}) {
+    TetMesh mesh = kuhn_mesh({3, 0.2});
+    const std::size_t n = mesh.n_tets();
+    for (std::size_t t = 0; t < n; t += 7) {
+      const Tet tet = mesh.tets[t];
+      Point near{};
+      for (std::size_t c = 0; c < 4; ++c)
+        for (std::size_t k = 0; k < 3; ++k)
+          near[k] += (c == 0 ? 1 - 3 * distance : distance) *
+                     mesh.points[static_cast<std::size_t>(tet[c])][k];
+      const auto middle = static_cast<VertexId>(mesh.n_points());
+      mesh.points.push_back(near);
+      for (std::size_t c = 0; c < 4; ++c) {
+        Tet part = tet;
+        part[c] = middle;
+        if (c == 0)
+          mesh.tets[t] = part;
+        else
+          mesh.tets.push_back(part);
+      }
+    }
+    const auto linear = [](const Point& p) { return 1 + p[0] + 2 * p[1] + 3 * p[2]; };
+    const auto got = gradients_of(gradient_rows(view(mesh)), sampled(mesh.points, linear));
+    CAPTURE(distance);
+    CHECK(worst(got, mesh.points, [](const Point&) { return Point{1, 2, 3}; }) < 1e-10);
+  }
 }
 
 TEST_CASE("patches that determine no full polynomial fall back", "[m2m][reconstruct]") {

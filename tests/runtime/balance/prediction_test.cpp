@@ -43,6 +43,17 @@ TEST_CASE("predictions continue constant, noisy and linear loads", "[balance]") 
   CHECK(trend.load(key(3)) == Approx(0).margin(1e-12));
 }
 
+TEST_CASE("phases whose loads are not recorded count as phases", "[balance]") {
+  Predictor trend(Prediction::linear_trend, 5);
+  for (int k = 0; k < 12; ++k) {
+    if (k == 0 || k == 5 || k == 6 || k == 11)
+      trend.record(phase({10.0 + k}));
+    else
+      trend.pass();
+  }
+  CHECK(trend.load(key(0)) == Approx(22));
+}
+
 TEST_CASE("an element that comes back meets its history, one that stays away is forgotten",
           "[balance]") {
   Predictor trend(Prediction::linear_trend, 5, 3);

@@ -133,6 +133,35 @@ TEST_CASE("an automatic round waits until a load is known", "[balance][rounds]")
   CHECK(coordinator.worth({5, 5, 2, 5, 1, 0}));
 }
 
+TEST_CASE("the imbalance of a phase compares known loads with their average", "[balance][rounds]") {
+  const PhaseSums sums{5, 20, 4, 20, 15, 1};  // 4 PEs of 5 s, and one element that has not run
+  CHECK(sums.max_over_average() == Approx(1));
+  CHECK(sums.average_time() > 5);
+}
+
+TEST_CASE("a round that is undone leaves the imbalance of the placement that comes back",
+          "[balance][rounds]") {
+  Phases phases({{4, 4}, {1, 1}});
+  Coordinator coordinator(automatic(), {});
+  REQUIRE(coordinator.worth(phases.sums()));
+  const auto moves = coordinator.decide(phases.reports);
+  REQUIRE(count(moves) != 0);
+  phases.move(moves);
+  coordinator.finish(0.5, 8);
+  // Now the loads turn, so that the placement before would have been even: 10 s on each.
+  REQUIRE(phases.pe_of(0) != phases.pe_of(1));
+  for (const std::uint64_t element : {0U, 1U, 100U, 101U})
+    phases.set_load(element, phases.pe_of(element) == phases.pe_of(0) ? 9 : 1);
+  REQUIRE(coordinator.worth(phases.sums()));
+  const auto back = coordinator.decide(phases.reports);
+  phases.move(back);
+  coordinator.finish(0.5, 8);
+  REQUIRE(coordinator.history().back().rolled_back);
+  Phases worse({{3, 3}, {1, 1}});  // loses 2 s a phase against an even placement
+  int n_phases = 0;
+  while (!coordinator.worth(worse.sums())) REQUIRE(++n_phases < 20);
+}
+
 TEST_CASE("a prediction leaves out phases in which a load was not known", "[balance][rounds]") {
   Phases phases(std::vector<std::vector<double>>{{5}});
   Predictor predictor(Prediction::moving_average);

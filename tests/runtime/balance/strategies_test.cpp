@@ -128,6 +128,9 @@ TEST_CASE("a partition of a partition moves nothing, whatever its parts were cal
     s.elements.pe = make_strategy(name, 1)(s);
     for (PeId& pe : s.elements.pe) pe = pe_at((slot(pe) * 7 + 3) % 16);
     CHECK(run(s, name).n_moves == 0);
+    // Measured background is equal on no two PEs.
+    for (std::size_t pe = 0; pe < 16; ++pe) s.pes.background[pe] = 1e-3 * static_cast<double>(pe);
+    CHECK(run(s, name).n_moves < s.elements.size() / 20);
   }
 }
 

@@ -45,6 +45,20 @@ for lost in a b c d; do
   says '^from 4 '
   same "$want" "$(log_of)"
 done
+# The members of a group come back to their PEs, whichever PE reads their files.
+lose a b c d e
+runs "a b a b" "$job" saved 4 buddy --pes 1
+runs "a b a b" "$job" saved 8 buddy-restart --pes 1
+same "$want" "$(log_of)"
+# From one of two folders, and the host of PE 0 is new: the run goes on with the other folder.
+lose a b
+runs "a b" "$job" saved 4 buddy --pes 1
+for host in a b; do cp -r "$where/$host/saved" "$where/$host/disk"; done
+mv "$where/a" "$where/e"
+rm -rf "$where/e/saved"
+runs "e b" "$job" saved 8 buddy-restart disk --pes 1
+says '^from 4 '
+same "$want" "$(log_of)"
 # The two hosts of a pair of buddies are lost.
 lose a b c d e
 runs "a b c d" "$job" saved 4 buddy --pes 1

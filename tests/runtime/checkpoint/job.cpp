@@ -1,7 +1,7 @@
-// test_checkpoint_job FOLDER LAST [buddy | buddy-restart]: runs the world of world.hpp to step
+// test_checkpoint_job FOLDER LAST [buddy | buddy-restart [FROM]]: runs the world of world.hpp to step
 // LAST, with a checkpoint after each second step, from the last checkpoint in FOLDER if there is
 // one. Prints the step that it began at and its log. With "buddy" FOLDER is local to each rank, and
-// the run restarts only if told to.
+// the run restarts only if told to, from FROM if that is given.
 #include "runtime/checkpoint.hpp"
 #include "tests/runtime/checkpoint/world.hpp"
 
@@ -11,10 +11,10 @@
 
 namespace {
 
-tess::Task run_to(std::string folder, std::int32_t last, bool restarts, bool buddy) {
+tess::Task run_to(std::string folder, std::int32_t last, std::string from, bool buddy) {
   world::State state;
-  if (restarts) {
-    state = co_await tess::restart<world::State>(folder);
+  if (!from.empty()) {
+    state = co_await tess::restart<world::State>(from);
   } else {
     co_await world::make(state);
   }
@@ -34,10 +34,11 @@ int main(int argc, char** argv) {
   return tess::guarded(argc, argv, [&](tess::Setup& setup) {
     if (argc < 3)
       tess::fail(tess::ErrorCode::bad_argument,
-                 "usage: test_checkpoint_job FOLDER LAST [buddy | buddy-restart]");
+                 "usage: test_checkpoint_job FOLDER LAST [buddy | buddy-restart [FROM]]");
     const std::string how = argc > 3 ? argv[3] : "";
     const bool restarts = how.empty() ? std::filesystem::exists(argv[1]) : how == "buddy-restart";
+    const std::string from = !restarts ? "" : argc > 4 ? argv[4] : argv[1];
     return tess::run(setup,
-                     [&] { return run_to(argv[1], std::atoi(argv[2]), restarts, !how.empty()); });
+                     [&] { return run_to(argv[1], std::atoi(argv[2]), from, !how.empty()); });
   });
 }

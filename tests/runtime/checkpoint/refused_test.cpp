@@ -268,6 +268,10 @@ struct Restarting {
     const int found = co_await total;
     sum = found;
   }
+  static tess::Task restart_with_future(const std::string& folder) {
+    const tess::Future<int> made;
+    (void)co_await tess::restart<State>(folder);
+  }
   static tess::Task restart_late(const std::string& folder) {
     (void)tess::create<Cell>(tess::range(2));
     (void)co_await tess::restart<State>(folder);
@@ -299,7 +303,11 @@ TEST_CASE("a group restarts on the same number of PEs, or its class says how",
   auto late = tess::test::adversarial(3, 3);
   late.options.report = [&report](const std::string& line) { report = line; };
   CHECK(tess::run(late, [&] { return Restarting::restart_late(folder); }) == 2);
-  CHECK(has(report, "restart() comes first, but this run has already made"));
+  CHECK(has(report, "restart() comes first, but this run has already made Cell"));
+  auto future = tess::test::adversarial(3, 3);
+  future.options.report = [&report](const std::string& line) { report = line; };
+  CHECK(tess::run(future, [&] { return Restarting::restart_with_future(folder); }) == 2);
+  CHECK(has(report, "restart() comes first, but this run has already made a future"));
 }
 
 namespace {

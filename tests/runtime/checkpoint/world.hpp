@@ -8,6 +8,7 @@
 #include "runtime/core/hash.hpp"
 #include "runtime/runtime.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -87,15 +88,25 @@ class Word : public tess::Chare<Word, std::string> {
 class Tally : public tess::Group<Tally> {
  public:
   void add(std::int64_t n) { sum_ += n; }
-  void sum(tess::Callback<std::int64_t> target) { contribute(tess::sum, sum_, target); }
-  void absorb(Tally&& other) { sum_ += std::exchange(other.sum_, 0); }
+  void sum(tess::Callback<std::int64_t> target) {
+    const std::int32_t n_pes = tess::current_pe().n_pes(), here = tess::current_pe().id().value;
+    const bool misplaced =
+        std::ranges::any_of(saved_on_, [&](std::int32_t pe) { return pe % n_pes != here; });
+    contribute(tess::sum, sum_ + (misplaced ? 1'000'000 : 0), target);
+  }
+  void absorb(Tally&& other) {
+    sum_ += std::exchange(other.sum_, 0);
+    saved_on_.insert(saved_on_.end(), other.saved_on_.begin(), other.saved_on_.end());
+  }
   template <class Ar>
   void serialize(Ar& ar) {
-    ar(sum_);
+    if constexpr (!Ar::is_reading) saved_on_.assign(1, tess::current_pe().id().value);
+    ar(sum_, saved_on_);
   }
 
  private:
   std::int64_t sum_ = 0;
+  std::vector<std::int32_t> saved_on_;  // the PEs of the members in the checkpoint that it is of
 };
 
 class Census : public tess::Chare<Census> {

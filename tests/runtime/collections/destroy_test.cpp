@@ -160,6 +160,60 @@ TEST_CASE(
   }
 }
 
+/// Its destructor uses its own index: another element is inserted, or a message is sent.
+class Phoenix : public tess::Chare<Phoenix, tess::Index1> {
+ public:
+  Phoenix() = default;
+  Phoenix(int life, bool rises) : life_(life), rises_(rises) {}
+  Phoenix(const Phoenix&) = delete;
+  Phoenix& operator=(const Phoenix&) = delete;
+  ~Phoenix() override {
+    if (life_ != 1) return;
+    if (rises_)
+      self().insert(2, false);
+    else
+      self().send<&Phoenix::burn>();
+  }
+  void burn() {}
+  [[nodiscard]] int life() const { return life_; }
+  void count(tess::Callback<int> target) { contribute(tess::sum, life_, target); }
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(life_, rises_);
+  }
+
+ private:
+  int life_ = 0;
+  bool rises_ = false;
+};
+
+tess::Task rise(int from, bool rises, int& life, int& sum) {
+  const auto birds = tess::create<Phoenix>(tess::sparse);
+  co_await tess::epoch([&] {
+    birds[{0}].insert_on(tess::PeId{from}, 1, rises);
+    birds[{1}].insert(10, false);
+  });
+  co_await tess::epoch([&] { birds[{0}].destroy(); });
+  if (rises) life = co_await birds[{0}].ask<&Phoenix::life>();
+  tess::Future<int> all;
+  birds.broadcast<&Phoenix::count>(all.callback());
+  sum = co_await all;
+}
+
+TEST_CASE("a destructor inserts at its own index, or sends there", "[runtime][destroy]") {
+  for (const int n_pes : {1, 3})
+    for (int from = 0; from < n_pes; ++from)
+      for (const bool rises : {true, false}) {
+        int life = 0, sum = 0;
+        const Ending ending =
+            run(n_pes, [&]() -> tess::Task { return rise(from, rises, life, sum); });
+        INFO(n_pes << " PEs, on " << from << (rises ? ", inserts" : ", sends") << ending.report);
+        CHECK(ending.exit_code == 0);
+        CHECK(sum == (rises ? 12 : 10));
+        CHECK(life == (rises ? 2 : 0));
+      }
+}
+
 int n_alive = 0;  // one thread runs all simulated PEs
 
 class Last : public tess::Chare<Last, tess::Index1> {
