@@ -4,6 +4,7 @@
 #include "runtime/core/check.hpp"
 #include "runtime/core/error.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -16,8 +17,8 @@ double total(ExactSum a, const ExactSum& b) {
   return a.total();
 }
 
-ErrorNorms norms_of(const SquareSums& sums, double plain, const LargestError& worst,
-                    std::uint64_t n_vertices) {
+ErrorNorms norms_of(const SquareSums& sums, bool underflows, double plain,
+                    const LargestError& worst, std::uint64_t n_vertices) {
   ErrorNorms norms;
   norms.n_vertices = n_vertices;
   if (n_vertices == 0) {
@@ -32,11 +33,10 @@ ErrorNorms norms_of(const SquareSums& sums, double plain, const LargestError& wo
   norms.linf = worst.error;
   norms.worst = worst.vertex;
   // Squares, and their products with volumes, that leave the range of double say nothing.
-  constexpr double least = 1e-280;
+  constexpr double least = 1e-280;  // of terms that are not zero, with digits to spare
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  const bool lost = norms.l2 == 0 && worst.error > 0;
-  if (lost || std::isinf(norms.l2) || std::isinf(reference) || (reference > 0 && reference < least))
-    norms.l2 = norms.l2_relative = nan;
+  const bool lost = underflows && std::max(reference, sums.error.total()) < least;
+  if (lost || std::isinf(norms.l2) || std::isinf(reference)) norms.l2 = norms.l2_relative = nan;
   if ((norms.rms == 0 && worst.error > 0) || std::isinf(norms.rms)) norms.rms = nan;
   return norms;
 }
@@ -46,9 +46,10 @@ FieldNorms norms_of(const ComponentSums& sums, const NormSums& whole) {
   all.add(sums.all);
   found.add(sums.found);
   FieldNorms norms;
-  norms.all =
-      norms_of(all, total(sums.plain_found, sums.plain_outside), sums.worst, whole.n_vertices);
-  norms.found = norms_of(found, sums.plain_found.total(), sums.worst_found, whole.n_found);
+  norms.all = norms_of(all, sums.underflows, total(sums.plain_found, sums.plain_outside),
+                       sums.worst, whole.n_vertices);
+  norms.found =
+      norms_of(found, sums.underflows, sums.plain_found.total(), sums.worst_found, whole.n_found);
   norms.worst_at = sums.worst.at;
   norms.integral = sums.value.total();
   norms.l2 = std::sqrt(sums.value_squared.total());

@@ -31,7 +31,8 @@
 //
 // Not saved: futures, timers, balancers. A state with a future does not compile. A callback to a
 // future may be left over in the state or in an element; after a restart a call of it ends the run
-// with an error, so make the future again and send its new callback. Call start_balancing() again;
+// with an error, so make the future again and send its new callback. No future may exist before
+// restart(). Call start_balancing() again;
 // the loads of balanced elements are saved, and BalancerProxy::place_again() uses them. Process
 // groups and read-only data cannot be saved; destroy() them before.
 #pragma once
@@ -101,7 +102,7 @@ class [[nodiscard]] Restart {
 /// anything else in the main coroutine. Throws Error if there is none that this program can restore
 /// on this many PEs. A group that was saved on another number of PEs needs a member function
 /// absorb(Member&&): member p of the checkpoint goes to PE p modulo the number of PEs, where the
-/// first becomes the member and absorbs the others; a PE without one gets a member from the default
+/// first to arrive becomes the member and absorbs the others, in any order; a PE without one gets a member from the default
 /// constructor.
 template <class State>
 Restart<State> restart(const std::string& folder) {

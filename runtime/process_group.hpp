@@ -178,7 +178,7 @@ template <class Part, class... Args>
 void create_shared_arrives(Pe& pe, CreateShared<Part, Args...>&& m) {
   using Shared = typename Part::Shared;
   const SameProcess<Shared> shared{std::apply(
-      [&pe](auto&... arg) {
+      [](auto&... arg) {
         return call_user(
             [&] { return std::make_shared<Shared>(std::in_place, std::move(arg)...); });
       },

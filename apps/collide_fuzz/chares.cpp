@@ -97,8 +97,10 @@ tess::Task collide_rounds() {
     co_await tess::epoch([&] { clients.broadcast<&Client::submit>(collider, round); });
     try {
       co_await run_collision(collider, report);
-    } catch (const tess::Error&) {  // voxels that are too small for 32-bit cells
-      if (size == 0) throw;
+    } catch (const tess::Error& error) {  // voxels that are too small for 32-bit cells
+      const std::string_view why = error.what();
+      if (size == 0 || (why.find("voxel size") == why.npos && why.find("voxel grid") == why.npos))
+        throw;
       problem->is_refused = true;
     }
     // Ends all voxels; the next collision makes them again.

@@ -51,8 +51,8 @@ inline void path_segments(std::size_t p, Vec3 from, std::span<const Waypoint> wa
   return {std::max(0.0, middle - half), std::min(1.0, middle + half)};
 }
 
-/// The turns by which a path that is straight in the world is cut where an object spins.
-inline constexpr double straight_turn = 0.05;
+/// The turns by which, and into how many pieces at most, a path that is straight in the world is cut where an object spins.
+inline constexpr double straight_turn = 0.05, most_pieces = 1000;
 
 /// Calls visit(from, to) in the object's coordinates for each piece of the segment, until a call
 /// returns true; returns whether one did. Seen from an object that spins or grows a piece is
@@ -60,7 +60,7 @@ inline constexpr double straight_turn = 0.05;
 /// a thousand pieces.
 template <class Visit>
 bool any_piece(const Object& object, double step, const PathSegment& segment, const Visit& visit) {
-  constexpr double most_bent = 0.25, most = 1000;
+  constexpr double most_bent = 0.25;
   const Frame& frame = object.frame;
   if (!frame.is_moving()) return visit(frame.to_object(segment.from), frame.to_object(segment.to));
   const auto [enters, leaves] = part_near(object, step, segment);
@@ -75,7 +75,7 @@ bool any_piece(const Object& object, double step, const PathSegment& segment, co
   const double growth = std::abs(frame.scale_rate) / frame.scale * step * lasts * near;
   const double cell = frame.scale * object.field->grid.cell;
   const double bends = std::sqrt((turn + growth) * way / (4 * most_bent * cell));
-  const int n = 1 + static_cast<int>(std::min(std::max(turn / straight_turn, bends), most));
+  const int n = 1 + static_cast<int>(std::min(std::max(turn / straight_turn, bends), most_pieces));
   Vec3 from = seen_at(enters);
   for (int i = 1; i <= n; ++i) {
     const Vec3 to = seen_at(enters + near * (static_cast<double>(i) / n));

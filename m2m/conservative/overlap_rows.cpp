@@ -187,7 +187,7 @@ GlobalId id_of_unknown(const MeshView& mesh, Centring centring, VertexId unknown
   if (centring == Centring::nodes) return mesh.point_ids[u];
   if (centring == Centring::cells) return mesh.tet_ids[u];
   const GlobalId tet = mesh.tet_ids[u / 4];
-  TESS_CHECK(tet <= std::numeric_limits<GlobalId>::max() / 4 - 1, "tet_ids has ", tet,
+  TESS_CHECK(tet <= std::numeric_limits<GlobalId>::max() / 4, "tet_ids has ", tet,
              ": values at corners need ids below 2^61");
   return 4 * tet + static_cast<GlobalId>(u % 4);
 }

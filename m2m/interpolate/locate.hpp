@@ -10,7 +10,7 @@
 //   - a tetrahedron without volume holds no point except its corners.
 // A point outside, but within the tolerance, snaps to the tetrahedron. Its weights extrapolate over
 // that distance: a linear field stays exact, and a weight may be slightly negative, down to -1e-6. Of
-// a tetrahedron that is so flat that they would extrapolate more, it gets the weights of the nearest
+// a tetrahedron that is so flat, or so small beside its coordinates, that they would extrapolate more, it gets the weights of the nearest
 // point: a linear field is wrong by its change over the distance.
 #pragma once
 

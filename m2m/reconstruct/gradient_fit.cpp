@@ -9,6 +9,8 @@ namespace {
 
 /// A direction whose extent is smaller than this part of the largest one is left out.
 constexpr double least_extent = 1e-13;
+/// Times the rounding of the offsets: a smaller extent may be rounding.
+constexpr double clearly = 32;
 /// In principal axes, where the root mean square of each coordinate is 1: neighbours at smaller
 /// distances, whose differences may be rounding, count as those at this one.
 constexpr double least_distance = 1e-3;
@@ -99,7 +101,7 @@ class Terms {
 }  // namespace
 
 /// Fills axes_ and basis_; returns the number of directions with an extent.
-std::size_t GradientFit::principal_axes(std::span<const Point> offsets) {
+std::size_t GradientFit::principal_axes(std::span<const Point> offsets, double rounding) {
   const std::size_t n = offsets.size();
   double reach = 0;
   for (const Point& d : offsets)
@@ -119,7 +121,7 @@ std::size_t GradientFit::principal_axes(std::span<const Point> offsets) {
   const double largest = *std::max_element(extent.begin(), extent.end());
   std::size_t n_axes = 0;
   for (std::size_t k = 0; k < 3; ++k) {
-    if (!(extent[k] > least_extent * largest)) continue;
+    if (!(extent[k] > std::max(least_extent * largest, clearly * rounding / reach))) continue;
     for (std::size_t j = 0; j < n; ++j) columns[n_axes][j] = columns[k][j] / extent[k];
     for (std::size_t i = 0; i < 3; ++i) basis_[n_axes][i] = v[k][i] / extent[k] / reach;
     ++n_axes;
@@ -127,10 +129,10 @@ std::size_t GradientFit::principal_axes(std::span<const Point> offsets) {
   return n_axes;
 }
 
-double GradientFit::compute(std::span<const Point> offsets, FitDegree degree) {
+double GradientFit::compute(std::span<const Point> offsets, FitDegree degree, double rounding) {
   const std::size_t n = offsets.size();
   weights_.assign(n, Point{});
-  const std::size_t n_axes = principal_axes(offsets);
+  const std::size_t n_axes = principal_axes(offsets, rounding);
   const auto axis = [&](std::size_t k) { return std::span(axes_).subspan(k * n, n); };
   std::vector<double> importance(n, 0.0);
   for (std::size_t j = 0; j < n; ++j) {

@@ -28,7 +28,8 @@ class GradientFit {
   /// Computes weights from the offsets d_j, in their order. Returns how well they determine the
   /// polynomial: the least part of a term that is independent of the terms before it, 0 if a term
   /// was dropped. Below `well_determined` the weights amplify what the polynomial leaves out.
-  double compute(std::span<const Point> offsets, FitDegree degree);
+  /// `rounding`: of the offsets; extents that are not clearly above it are none.
+  double compute(std::span<const Point> offsets, FitDegree degree, double rounding = 0);
 
   static constexpr double well_determined = 0.4;
 
@@ -36,7 +37,7 @@ class GradientFit {
   [[nodiscard]] std::span<const Point> weights() const noexcept { return weights_; }
 
  private:
-  std::size_t principal_axes(std::span<const Point> offsets);
+  std::size_t principal_axes(std::span<const Point> offsets, double rounding);
 
   std::vector<Point> weights_;
   std::vector<double> axes_;    // coordinates in principal axes: 3 columns

@@ -3,10 +3,13 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <tuple>
 
 namespace tess::m2m {
 namespace {
+
+constexpr double least_normal = std::numeric_limits<double>::min();
 
 double sum_of(const std::array<double, 4>& x) {
   return (x[0] + x[1]) + (x[2] + x[3]);
@@ -54,6 +57,12 @@ struct Component {
         t2_found[k] = t2[k];
       }
       const double quarter = std::abs(signed_volume(corners)) / 4;
+      for (std::size_t k = 0; k < 4; ++k) {
+        const auto at = static_cast<std::size_t>(tet[k]);
+        if (quarter > 0 && ((values[at] != truth[at] && quarter * e2[k] < least_normal) ||
+                            (truth[at] != 0 && quarter * t2[k] < least_normal)))
+          sums.underflows = true;
+      }
       SquareSums& whole = n_found == 4 ? sums.same : sums.all;
       whole.error.add(quarter * sum_of(e2));
       whole.truth.add(quarter * sum_of(t2));
@@ -105,6 +114,7 @@ void ComponentSums::add(const ComponentSums& other) {
   plain_outside.add(other.plain_outside);
   worst.add(other.worst);
   worst_found.add(other.worst_found);
+  underflows = underflows || other.underflows;
 }
 
 void NotFinite::keep_first(const NotFinite& other) {

@@ -48,6 +48,7 @@ struct ComponentSums {
       truth_magnitude;                  ///< each weighted with m, over all vertices
   ExactSum plain_found, plain_outside;  ///< e² per vertex
   LargestError worst, worst_found;
+  bool underflows = false;  ///< a term that is not zero became zero or lost digits
   void add(const ComponentSums& other);
 };
 

@@ -28,7 +28,8 @@ void Predictor::record(const Snapshot& measured) {
     history.push_back({n_phases_, measured.elements.load[i]});
   }
   // Searching all histories costs as much as recording, so it is done only now and then.
-  if (n_phases_ % (forget_after_ / 4 + 1) != 0) return;
+  if (n_phases_ < purged_at_ + forget_after_ / 4 + 1) return;
+  purged_at_ = n_phases_;
   boost::unordered::erase_if(history_, [&](const auto& entry) {
     return entry.second.back().phase + forget_after_ < n_phases_;
   });

@@ -54,6 +54,7 @@ class Predictor {
   std::size_t window_;
   std::size_t forget_after_;
   std::size_t n_phases_ = 0;
+  std::size_t purged_at_ = 0;  // the phase in which old histories were removed last
   boost::unordered_flat_map<ElementKey, History, ElementKeyHash> history_;
 };
 

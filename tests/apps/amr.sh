@@ -8,6 +8,7 @@ limit=100
 work=("$bin" --cells 4 --steps 10 --max-level 4)
 "${work[@]}" --pes 1 --json "$scratch/first.json" >/dev/null || fail "amr"
 hash=$(sed -n 's/.*"result_hash": "\([0-9a-f]*\)".*/\1/p' "$scratch/first.json")
+[[ -n $hash ]] || fail "no result_hash"
 grep -q '"mass_change_quanta": 0' "$scratch/first.json" && pass || fail "the mass"
 for balance in "" "--balance greedy_refine" "--balance hilbert" "--balance rotate"; do
   exits 0 "result_hash $hash" "${work[@]}" --pes 2 $balance

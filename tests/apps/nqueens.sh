@@ -15,6 +15,7 @@ same() {
 for task in "11" "16 --first"; do
   "$bin" $task --pes 1 --json "$scratch/first.json" >/dev/null || fail "nqueens $task"
   want=$(hash_of "$scratch/first.json")
+  [[ -n $want ]] || fail "no hash"
   for form in group chares; do
     for priority in path none; do
       all=("$bin" $task --form $form --priority $priority --grain 13)

@@ -68,6 +68,7 @@ until_checkpoint() {
   "$@" >"$scratch/out" 2>&1 &
   child=$!
   while kill -0 $child 2>/dev/null && [[ $(latest) == "$before" ]]; do sleep 0.002; done
+  [[ $(latest) != "$before" ]] && pass || fail "no new checkpoint: $*"
   kill -9 $child 2>/dev/null
   wait $child 2>/dev/null
 }

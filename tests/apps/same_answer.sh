@@ -10,6 +10,7 @@ hash_of() { grep -o '"result_hash": "[0-9a-f]*"' "$1"; }
 
 "${transfer[@]}" --pes 1 --chares 1 --json "$scratch/first.json" >/dev/null || exit 1
 want=$(hash_of "$scratch/first.json")
+[[ -n $want ]] || fail "no result_hash"
 echo "one PE, one chare per mesh: $want"
 
 # same COMMAND…: the command gives the same hash.
@@ -40,6 +41,7 @@ box "$scratch/wide.msh" 3 -1 12
 transfer=("$bin/m2m_transfer" kuhn:8 "$scratch/wide.msh" --field 'x+10*y+100*z' --policy nearest)
 "${transfer[@]}" --pes 1 --chares 1 --json "$scratch/first.json" >/dev/null || exit 1
 want=$(hash_of "$scratch/first.json")
+[[ -n $want ]] || fail "no result_hash"
 echo "mostly outside: $want"
 for chares in 2 7 64 256; do same "${transfer[@]}" --pes 2 --chares $chares; done
 same "${transfer[@]}" --pes 2 --voxel 0.03
@@ -56,7 +58,7 @@ no_growth() {
     timeout 120 "$@" --repeat 1000 --json "$scratch/many.json" >"$scratch/out" 2>&1
   local code=$? few=0 many=0
   ((code == 0)) && few=$(memory_of "$scratch/few.json") many=$(memory_of "$scratch/many.json")
-  if ((code == 0 && many < few + 4000000)) && [[ $(hash_of "$scratch/few.json") == "$(hash_of "$scratch/many.json")" ]]; then
+  if ((code == 0 && few > 0 && many > 0 && many < few + 4000000)) && [[ $(hash_of "$scratch/few.json") == "$(hash_of "$scratch/many.json")" ]]; then
     pass
   else
     fail "(exit $code): $few bytes after 10 transfers, $many after 1000: $*"

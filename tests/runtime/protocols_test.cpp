@@ -53,6 +53,12 @@ std::int32_t one_to_forty(std::uint64_t seed) {
 TEST_CASE("an index that all PEs demand at once is created once", "[runtime][protocol]") {
   run_seeds("create_at_once");
 }
+TEST_CASE("elements begin where a map puts them", "[runtime][protocol]") {
+  run_seeds("maps");
+}
+TEST_CASE("messages through an interface find elements of several classes", "[runtime][protocol]") {
+  run_seeds("interfaces");
+}
 TEST_CASE("all means of control work in one program at the same time",
           "[runtime][protocol][checkpoint]") {
   run_seeds("all_at_once", &tess::fuzz::pes_of_seed, 300);
@@ -183,15 +189,40 @@ TEST_CASE("a scenario that checks too little does not pass", "[runtime][protocol
 TEST_CASE("the scenarios hold on threads", "[runtime][protocol][threads]") {
   // Not the scenarios whose report depends on one order of events, and not balance_first_round,
   // whose loads are those of the simulated clock.
-  for (const char* name :
-       {"create_at_once",   "message_first",  "lives",           "broadcasts",
-        "rounds",           "newborns",       "refinement",      "sections",
-        "sections_end",     "tour",           "epochs",          "epoch_migrations",
-        "flood_exit",       "mailboxes",      "destroyed",       "constructors",
-        "timers",           "asks",           "payloads",        "floods",
-        "groups",           "balance_rounds", "balance_barrier", "balance_rotate",
-        "balance_periodic", "balance_epochs", "priorities",      "process_groups",
-        "all_at_once",      "scans",          "ends_at_once",    "balance_newcomers"}) {
+  for (const char* name : {"create_at_once",
+                           "message_first",
+                           "lives",
+                           "broadcasts",
+                           "rounds",
+                           "newborns",
+                           "refinement",
+                           "sections",
+                           "sections_end",
+                           "tour",
+                           "epochs",
+                           "epoch_migrations",
+                           "flood_exit",
+                           "mailboxes",
+                           "destroyed",
+                           "constructors",
+                           "timers",
+                           "asks",
+                           "payloads",
+                           "floods",
+                           "groups",
+                           "balance_rounds",
+                           "balance_barrier",
+                           "balance_rotate",
+                           "balance_periodic",
+                           "balance_epochs",
+                           "priorities",
+                           "process_groups",
+                           "all_at_once",
+                           "scans",
+                           "ends_at_once",
+                           "balance_newcomers",
+                           "maps",
+                           "interfaces"}) {
     for (const std::int32_t n_pes : {1, 2, 4}) {
       for (std::uint64_t seed = 1; seed <= 3; ++seed) {
         Trial trial(seed, n_pes, Trial::On::threads);

@@ -34,10 +34,13 @@ void time_crowd(const Object* object, const Rules& rules, const Subject& subject
   time_steps(object, rules, 0.1 * subject.thickness / n_steps, n_steps, subject, n, row);
 }
 
-/// The object around the origin: places that are compared in float keep their digits.
+/// The object around the origin: places that are compared in float keep their digits. A field from
+/// a file stays where it is.
 SceneObject centred(SceneObject object) {
+  if (!object.field.empty()) return object;
   const Vec3 centre = bounds(object.surface).centre();
   for (Vec3& v : object.surface.vertices) v = v - centre;
+  object.grid.origin = object.grid.origin - centre;
   return object;
 }
 

@@ -18,10 +18,6 @@ class Purse {
  public:
   void add(std::int64_t amount) { total_ += amount; }
   [[nodiscard]] std::int64_t total() const { return total_; }
-  /// Called by a message while others may read.
-  void check(std::int64_t least) const {
-    ledger->trial.expect(total_ >= least, "a purse holds ", total_, ", less than ", least);
-  }
 
  private:
   std::int64_t total_ = 0;
@@ -67,7 +63,6 @@ Task pay_all(std::int64_t expected) {
   const auto payers = create_group<Payer>();
   co_await epoch([&] {
     payers.broadcast<&Payer::pay>(purses, prices);
-    purses.broadcast<&Purse::check>(0);
     purses.broadcast<&Purse::add>(1);
   });
   Future<std::int64_t> total;

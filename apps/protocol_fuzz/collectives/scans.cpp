@@ -39,6 +39,7 @@ struct Chain {
   std::uint64_t seed = 0;
   double move_chance = 0, create_chance = 0, end_chance = 0;
   std::atomic<std::int32_t> n_indices{0};
+  std::atomic<int> n_given{0};  // contributions of a leg, in this process
   std::mutex mutex{};
   std::vector<List> results{};  // inclusive: the last one is the element's own contribution
 };
@@ -65,6 +66,7 @@ class Racer : public Chare<Racer, Index1> {
     std::vector<Given> own;
     for (std::int32_t scan = 0; scan < leg.n_scans; ++scan) {
       const Given mine{me, n_given_++};
+      ++chain->n_given;
       // Equal for all elements.
       Random kind(mix(chain->seed + static_cast<std::uint64_t>(leg.number * 100 + scan)));
       const bool one_by_one = kind.chance(0.3);
@@ -157,6 +159,9 @@ void check_leg(std::int32_t first_scan, std::int32_t n_scans) {
       chain->trial.expect(given.insert(result.back()).second, "a contribution has two results");
     }
   }
+  const int n_given = chain->n_given.exchange(0);
+  chain->trial.expect(given.size() == static_cast<std::size_t>(n_given), given.size(), " of ",
+                      n_given, " contributions have a result");
 }
 
 Task run_legs(std::int32_t n_runners, std::uint64_t map, std::vector<std::int32_t> legs) {

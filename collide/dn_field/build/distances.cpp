@@ -9,7 +9,8 @@ namespace {
 constexpr double on_surface = 1e-3;  // of a cell: nearer, the direction to the surface is rounding
 constexpr int block_edge = block_layers;
 constexpr int query_edge = 4 * block_edge;  // voxels in x and y that are skipped together
-constexpr double just_beyond = 1 + 1e-9;
+// Of squares: up to where cut_off() is stored.
+constexpr double just_beyond = (1 + 0x1p-21) * (1 + 0x1p-21) * (1 + 1e-9);
 
 int up_to(int voxel, int step, int n) {
   return std::min(voxel + step, n);

@@ -242,8 +242,8 @@ void keep_arcs(const Scene& scene, const Contact& contact, L touches, D f, D3 x,
     scratch.waypoints.push_back({particle, f[i], Vec3{x.x[i], x.y[i], x.z[i]}});
     const PlacedObject& object = scene.objects[static_cast<std::size_t>(contact.object[i])];
     const D3 seen = Pose(object, f).seen(x);
-    const int n =
-        1 + static_cast<int>((1 - f[i]) * static_cast<double>(object.spin) / straight_turn);
+    const double turns = (1 - f[i]) * static_cast<double>(object.spin) / straight_turn;
+    const int n = 1 + static_cast<int>(std::min(turns, most_pieces));
     for (int arc = 1; arc < n; ++arc) {
       const double part = f[i] + (1 - f[i]) * arc / n;
       const D3 at = Pose(object, all(part)).place(seen);

@@ -32,6 +32,11 @@ class GmshFields : public FieldReader {
         file.damaged("expected a section such as $Nodes");
       }
     }
+    // Views of several steps say when these are; many writers give a view of one step no time.
+    for (const bool several : {true, false})
+      for (const std::vector<Section>& sections : sections_)
+        if (has_several_steps(sections) == several)
+          for (const Section& section : sections) time_of_.try_emplace(section.step, section.time);
     for (const auto& [step, time] : time_of_) times_.push_back(time);
   }
 
@@ -75,12 +80,15 @@ class GmshFields : public FieldReader {
     double time = 0;
   };
 
-  /// The steps of the file have the times of the view that comes first. A view of one step may have
-  /// any time, since many writers give none.
+  static bool has_several_steps(const std::vector<Section>& sections) {
+    return std::ranges::any_of(sections,
+                               [&](const Section& s) { return s.step != sections[0].step; });
+  }
+
+  /// Views of several steps have the times of the first of them.
   void check_times(std::size_t field, int step, double listed) const {
     const std::vector<Section>& sections = sections_[field];
-    if (std::ranges::all_of(sections, [&](const Section& s) { return s.step == sections[0].step; }))
-      return;
+    if (!has_several_steps(sections)) return;
     for (const Section& section : sections)
       if (section.step == step && section.time != listed)
         fail(ErrorCode::bad_value, path_, ": variable '", fields_[field].name, "' has the time ",
@@ -147,7 +155,6 @@ class GmshFields : public FieldReader {
     if (fields_[field].n_components != each)
       file.damaged("'", name, "' has ", fields_[field].n_components, " components and ", each);
     sections_[field].push_back({begin, n_rows, step, time});
-    time_of_.try_emplace(step, time);
   }
   static const char* end_of(FieldPlace place) {
     return place == FieldPlace::vertices ? "$EndNodeData" : "$EndElementData";

@@ -4,8 +4,8 @@
 //
 //     number = place | how often the place had been used before << 32
 //
-// A restart continues the numbers behind those of the saved run. The futures that the main program
-// made before it keep their numbers.
+// A restart continues the numbers behind those of the saved run. Its own futures keep their numbers;
+// the main program has none before it.
 #pragma once
 
 #include <cstdint>

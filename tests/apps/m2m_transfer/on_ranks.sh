@@ -20,6 +20,7 @@ exits 2 "missing/r.pvtu" "${ranks[@]}" "${meshes[@]}" --out "$scratch/missing/r.
 meshes=(kuhn:4 kuhn:5@0.2 --pes 1)
 exits 0 result "$transfer" "${meshes[@]}"
 hash=$(awk '$1 == "result" { print $2 }' "$scratch/out")
+[[ -n $hash ]] || fail "no result"
 exits 0 "$hash" "${ranks[@]}" "${meshes[@]}" --weights "$scratch/two.nc"
 exits 0 "$hash" "$transfer" "${meshes[@]}" --weights "$scratch/one.nc"
 cmp "$scratch/one.nc" "$scratch/two.nc" && pass || fail "the weights of two ranks differ from those of one process"

@@ -3,6 +3,7 @@
 #include "collide/dn_field/made_field.hpp"
 #include "runtime/core/error.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/worst.hpp"
 
 #include <random>
 
@@ -39,9 +40,9 @@ TEST_CASE("tangent and trilinear look-ups of a plane are exact", "[dn_field][loo
     asked.look_up(field, kind);
     double worst = 0, turned = 0;
     for (std::size_t p = 0; p < asked.x.size(); ++p) {
-      worst = std::max(
+      tess::test::worsen(
           worst, std::abs(static_cast<double>(asked.distance[p]) - dot(normal, asked.point(p))));
-      turned = std::max(turned, norm(asked.normal(p) - normal));
+      tess::test::worsen(turned, norm(asked.normal(p) - normal));
     }
     CHECK(worst < (kind == LookUp::nearest ? 0.87 * field.grid.cell : 1e-5));
     CHECK(turned < 1e-4);
@@ -60,9 +61,9 @@ TEST_CASE("off the medial axis errors fall with the cell: order 1 by nearest, 2 
       for (std::size_t p = 0; p < asked.x.size(); ++p) {
         const Vec3 at = asked.point(p);
         if (norm(at) < 0.4) continue;
-        error[fine] = std::max(error[fine],
-                               std::abs(static_cast<double>(asked.distance[p]) - (norm(at) - 0.7)));
-        turned[fine] = std::max(turned[fine], norm(asked.normal(p) - direction(at)));
+        tess::test::worsen(error[fine],
+                           std::abs(static_cast<double>(asked.distance[p]) - (norm(at) - 0.7)));
+        tess::test::worsen(turned[fine], norm(asked.normal(p) - direction(at)));
         CHECK(std::abs(norm(asked.normal(p)) - 1) < 1e-6);
       }
     }

@@ -355,6 +355,7 @@ TEST_CASE("gmsh's data at nodes and elements are read by name and step, in any o
             text_of({"NodeData", "temp", 0.25, 0, rows_of(early, gap)}, binary);
         const std::string second =
             text_of({"NodeData", "temp", 1.5, 10, rows_of(late, gap)}, binary);
+        bytes += text_of({"NodeData", "mask", 7, 0, rows_of(early, gap)}, binary);
         bytes += legacy ? first + second : second + first;
         bytes += text_of({"NodeData", "a flow", 0.25, 0, rows_of(flow, gap)}, binary);
         bytes += text_of({"NodeData", "other times", 10, 0, rows_of(early, gap)}, binary);

@@ -77,7 +77,8 @@ tess::Task balance_by_all() {
     for (int k = 0; k < n_tries && (best.ratio > most_after() || best.n_unknown != 0); ++k) {
       Outcome one;
       co_await balance_by(name, &one);
-      if (one.n_unknown == 0 || k == 0) best = {std::min(best.ratio, one.ratio), one.n_unknown};
+      const bool better = one.n_unknown == 0 && (best.n_unknown != 0 || one.ratio < best.ratio);
+      if (k == 0 || better) best = one;
     }
     tess::print(name, ": ", best.ratio, ", unknown loads ", best.n_unknown, "\n");
     good = good && best.ratio <= most_after() && best.n_unknown == 0;

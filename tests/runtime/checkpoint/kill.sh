@@ -32,5 +32,6 @@ for ((i = 0; i < times; ++i)); do
     tail -3 "$scratch/out"
   fi
 done
+((${n_killed:-0} > 0)) && pass || fail "nothing was killed"
 echo "killed ${n_killed:-0} times, ${n_unfinished:-0} times while a checkpoint was being written"
 finish

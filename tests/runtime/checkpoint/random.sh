@@ -43,7 +43,7 @@ leg() {
   n_legs=$((n_legs + 1))
   ((code == 0)) && return
   # mpirun may end with 1 where a rank ends with 143.
-  if [[ $2 == KILL && $code -ne 137 || $2 == TERM && $code -ne 143 && $code -ne 1 ]] || grep -q 'wrong answer\|deadlock\|expected' "$scratch/leg"; then
+  if [[ $2 == KILL && $code -ne 137 || $2 == TERM && $code -ne 143 && $code -ne 1 ]] || grep -q 'wrong answer\|deadlock\|expected\|uncaught exception\|error: ' "$scratch/leg"; then
     fail "time $i: exit code $code: $1 $problem $options"
     head -40 "$scratch/leg"
   fi
