@@ -28,6 +28,7 @@
 #include "runtime/collections/collection_action.hpp"
 #include "runtime/collections/reductions/kept_scans.hpp"
 #include "runtime/core/algorithm.hpp"
+#include "runtime/messages/entry_attributes.hpp"
 #include "runtime/messages/entry_traits.hpp"
 #include "runtime/reduction.hpp"
 
