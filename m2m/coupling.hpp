@@ -72,8 +72,8 @@ struct CouplingOptions {
   /// nearest one. Its value is that of the nearest point there. Kinds that are not conservative.
   double tolerance = 0;
   /// Keeps values within those of the vertices of the donor. It matters for points that snap within
-  /// rounding, whose values extrapolate, and for second_order, which then is `limited`. Kinds that are not
-  /// conservative.
+  /// rounding, whose values extrapolate, and for second_order, which then is `limited`.
+  /// Kinds that are not conservative.
   bool clamp = false;
   /// What the values belong to. Sources: anything for linear and conservative kinds, nodes for the
   /// others. Targets: nodes, or cells for conservative kinds.

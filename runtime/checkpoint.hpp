@@ -102,8 +102,8 @@ class [[nodiscard]] Restart {
 /// anything else in the main coroutine. Throws Error if there is none that this program can restore
 /// on this many PEs. A group that was saved on another number of PEs needs a member function
 /// absorb(Member&&): member p of the checkpoint goes to PE p modulo the number of PEs, where the
-/// first to arrive becomes the member and absorbs the others, in any order; a PE without one gets a member from the default
-/// constructor.
+/// first to arrive becomes the member and absorbs the others, in any order; a PE without one gets a
+/// member from the default constructor.
 template <class State>
 Restart<State> restart(const std::string& folder) {
   return Restart<State>(folder);

@@ -319,8 +319,7 @@ template <class... A>
 consteval bool check_joined() {
   static_assert((Joinable<typename JoinAs<A>::type> && ...),
                 "when_all and when_any take asks, futures, epochs, mailbox.take(…) and "
-                "tess::sleep(…); when_all "
-                "also a vector of tasks");
+                "tess::sleep(…); when_all also a vector of tasks");
   return true;
 }
 

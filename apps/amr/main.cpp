@@ -94,7 +94,7 @@ int start(tess::Setup& setup, int argc, char** argv) {
   line.option("--order", problem.order, "of the scheme").between(1, 3);
   line.option("--cfl", problem.cfl, "of the finest cells, at most 1");
   line.option("--time", problem.end, "time at the end").positive();
-  line.option("--steps", problem.n_steps, "instead of --time").between(1, 100'000'000);
+  line.option("--steps", problem.n_steps, "instead of --time").between(1, most_steps);
   line.option("--width", problem.width, "standard deviation of the Gaussian").positive();
   line.option("--velocity VX,VY,VZ", velocity, "of the flow").separated_by(',').takes(3, 3);
   line.option("--centre X,Y,Z", centre, "of the Gaussian at time 0").separated_by(',').takes(3, 3);

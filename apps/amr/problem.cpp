@@ -8,10 +8,6 @@
 
 namespace amr {
 
-namespace {
-constexpr double most_steps = 100'000'000;
-}  // namespace
-
 void Problem::complete() {
   using tess::ErrorCode;
   if (n_cells < 4 || n_cells % 2 != 0)

@@ -8,6 +8,8 @@
 
 namespace amr {
 
+inline constexpr std::int32_t most_steps = 100'000'000;
+
 struct Problem {
   std::int32_t n_cells = 8;  ///< of a block along each axis; even, at least 4
   std::int32_t least_level = 2, most_level = 4;

@@ -51,7 +51,8 @@ inline void path_segments(std::size_t p, Vec3 from, std::span<const Waypoint> wa
   return {std::max(0.0, middle - half), std::min(1.0, middle + half)};
 }
 
-/// The turns by which, and into how many pieces at most, a path that is straight in the world is cut where an object spins.
+/// The turns by which, and into how many pieces at most, a path that is straight in the world is cut
+/// where an object spins.
 inline constexpr double straight_turn = 0.05, most_pieces = 1000;
 
 /// Calls visit(from, to) in the object's coordinates for each piece of the segment, until a call

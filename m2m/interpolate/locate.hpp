@@ -9,9 +9,10 @@
 //   - a point equal to a vertex has the weight 1 there, and 0 at the others;
 //   - a tetrahedron without volume holds no point except its corners.
 // A point outside, but within the tolerance, snaps to the tetrahedron. Its weights extrapolate over
-// that distance: a linear field stays exact, and a weight may be slightly negative, down to -1e-6. Of
-// a tetrahedron that is so flat, or so small beside its coordinates, that they would extrapolate more, it gets the weights of the nearest
-// point: a linear field is wrong by its change over the distance.
+// that distance: a linear field stays exact, and a weight may be slightly negative, down to -1e-6.
+// Of a tetrahedron that is so flat, or so small beside its coordinates, that they would extrapolate
+// more, it gets the weights of the nearest point: a linear field is wrong by its change over the
+// distance.
 #pragma once
 
 #include "m2m/interpolate/candidate.hpp"

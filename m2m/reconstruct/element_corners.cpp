@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 namespace tess::m2m {
@@ -131,9 +130,7 @@ std::vector<double> element_corners(MeshView mesh, std::span<const GlobalId> ids
     for (const std::int32_t n : neighbours)
       offsets.push_back(
           difference(elements.centroids[static_cast<std::size_t>(n)], elements.centroids[e]));
-    double largest = 0;
-    for (const double x : elements.centroids[e]) largest = std::max(largest, std::abs(x));
-    fit.compute(offsets, FitDegree::linear, largest * std::numeric_limits<double>::epsilon());
+    fit.compute(offsets, FitDegree::linear, rounding_at(elements.centroids[e]));
     for (std::size_t c = 0; c < n_components; ++c) {
       const double own = value(me, c);
       double low = own, high = own;

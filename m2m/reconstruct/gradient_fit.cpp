@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace tess::m2m {
 namespace {
@@ -99,6 +100,11 @@ class Terms {
 };
 
 }  // namespace
+
+double rounding_at(const Point& p) noexcept {
+  const double largest = std::max({std::abs(p[0]), std::abs(p[1]), std::abs(p[2])});
+  return largest * std::numeric_limits<double>::epsilon();
+}
 
 /// Fills axes_ and basis_; returns the number of directions with an extent.
 std::size_t GradientFit::principal_axes(std::span<const Point> offsets, double rounding) {

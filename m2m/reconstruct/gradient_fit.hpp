@@ -21,6 +21,9 @@
 
 namespace tess::m2m {
 
+/// The rounding of offsets from a point: a unit in the last place of its largest coordinate.
+[[nodiscard]] double rounding_at(const Point& p) noexcept;
+
 enum class FitDegree : std::uint8_t { linear, quadratic };
 
 class GradientFit {
@@ -29,7 +32,7 @@ class GradientFit {
   /// polynomial: the least part of a term that is independent of the terms before it, 0 if a term
   /// was dropped. Below `well_determined` the weights amplify what the polynomial leaves out.
   /// `rounding`: of the offsets; extents that are not clearly above it are none.
-  double compute(std::span<const Point> offsets, FitDegree degree, double rounding = 0);
+  double compute(std::span<const Point> offsets, FitDegree degree, double rounding);
 
   static constexpr double well_determined = 0.4;
 

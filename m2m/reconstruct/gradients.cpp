@@ -6,8 +6,6 @@
 #include "m2m/topology/tets_of_vertices.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <numeric>
 
 namespace tess::m2m {
@@ -39,9 +37,7 @@ class RowFitter {
       const Point& to = points_[static_cast<std::size_t>(j)];
       offsets_.push_back({to[0] - from[0], to[1] - from[1], to[2] - from[2]});
     }
-    double largest = 0;
-    for (const double x : from) largest = std::max(largest, std::abs(x));
-    return fit_.compute(offsets_, degree, largest * std::numeric_limits<double>::epsilon());
+    return fit_.compute(offsets_, degree, rounding_at(from));
   }
 
   /// Appends the row: differences u_j - u_centre become a weight of the centre, which comes first.
