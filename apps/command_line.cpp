@@ -42,9 +42,17 @@ struct OneOf<std::vector<T>> : OneOf<T> {};
 /// CLI11 takes -1 for 2^64 - 1, and so what is larger.
 std::string fits_unsigned(const std::string& value) {
   errno = 0;
-  (void)std::strtoull(value.c_str(), nullptr, 0);
-  return value.starts_with('-') || errno == ERANGE
+  (void)std::strtoull(value.c_str(), nullptr, 10);
+  return value.find('-') != std::string::npos || errno == ERANGE
              ? value + " is not a whole number from 0 to 18446744073709551615"
+             : std::string();
+}
+
+/// CLI11 takes 010 for 8.
+std::string is_decimal(const std::string& value) {
+  const std::size_t first = value.find_first_not_of(" +-");
+  return first != std::string::npos && first + 1 < value.size() && value[first] == '0'
+             ? value + " begins with a zero; write it as a decimal number"
              : std::string();
 }
 
@@ -53,7 +61,19 @@ std::string fits_unsigned(const std::string& value) {
 Option& Option::between(std::int64_t least, std::int64_t most) {
   std::string range;
   if (most <= most_to_mention) range = ' ' + std::to_string(least) + " to " + std::to_string(most);
-  option_->check(CLI::Range(least, most).description(range));
+  if (!is_real_) {
+    option_->check(CLI::Range(least, most).description(range));
+    return *this;
+  }
+  const auto refusal = [least, most](const std::string& value) {
+    double number = 0;
+    return CLI::detail::lexical_cast(value, number) && number >= static_cast<double>(least) &&
+                   number <= static_cast<double>(most)
+               ? std::string()
+               : "Value " + value + " not in range " + std::to_string(least) + " to " +
+                     std::to_string(most);
+  };
+  option_->check(refusal, range);
   return *this;
 }
 
@@ -109,18 +129,19 @@ Option CommandLine::option(const std::string& name, T& value, const std::string&
   option->capture_default_str();
   if constexpr (std::is_same_v<typename OneOf<T>::type, std::uint64_t>)
     option->check(fits_unsigned, "");
+  if constexpr (std::is_integral_v<typename OneOf<T>::type>) option->check(is_decimal, "");
   // What follows "--fields sin" is the first of the arguments without a name, not a second field.
   if (name.starts_with("-")) option->allow_extra_args(false);
   // As for the runtime's options: the last value counts.
   if (name.starts_with("-") && option->get_items_expected_max() == 1)
     option->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
-  return Option(option);
+  return {option, std::is_floating_point_v<typename OneOf<T>::type>};
 }
 
 Option CommandLine::flag(const std::string& name, bool& value, const std::string& meaning) {
   CLI::Option* const option = app_->add_flag(name, value, meaning);
   option->group(group_);
-  return Option(option);
+  return {option, false};
 }
 
 bool CommandLine::parse(int argc, char** argv, const std::string& footer) {

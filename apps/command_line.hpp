@@ -22,6 +22,7 @@ namespace apps {
 /// An option of a CommandLine, for what there is to say beyond its name.
 class Option {
  public:
+  /// Both included; a variable that is a double takes any number between.
   Option& between(std::int64_t least, std::int64_t most);
   Option& positive();
   Option& one_of(const std::vector<std::string>& values);
@@ -36,8 +37,9 @@ class Option {
 
  private:
   friend class CommandLine;
-  explicit Option(CLI::Option* option) : option_(option) {}
+  Option(CLI::Option* option, bool is_real) : option_(option), is_real_(is_real) {}
   CLI::Option* option_;
+  bool is_real_;
 };
 
 class CommandLine {

@@ -11,15 +11,22 @@ root=$(cd "$(dirname "$0")/.." && pwd)
 source_h=0.04 target_h=0.0358
 source_ladder=(0.16 0.113 0.08 0.0566 0.04) target_ladder=(0.143 0.101 0.0716 0.0506 0.0358)
 built='' into=$root/build/demo
+usage() {
+  echo "usage: apps/demo.sh [--quick] [--built BIN] [--into FOLDER]" >&2
+  exit 2
+}
 while (($# > 0)); do
   case $1 in
     --quick)
       source_h=0.08 target_h=0.0716
       source_ladder=(0.113 0.08 0.0566) target_ladder=(0.101 0.0716 0.0506)
       shift ;;
-    --built) built=$(cd "${2:?--built takes a folder}" && pwd); shift 2 ;;
-    --into) into=${2:?--into takes a folder}; shift 2 ;;
-    *) echo "usage: apps/demo.sh [--quick] [--built BIN] [--into FOLDER]" >&2; exit 2 ;;
+    --built | --into)
+      [[ -n ${2:-} ]] || usage
+      # Absolute: the working folder changes below.
+      if [[ $1 == --built ]]; then built=$(cd "$2" && pwd); else into=$(realpath -m -- "$2"); fi
+      shift 2 ;;
+    *) usage ;;
   esac
 done
 

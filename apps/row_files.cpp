@@ -1,5 +1,6 @@
 #include "apps/row_files.hpp"
 
+#include "apps/plot/file_names.hpp"
 #include "apps/plot/json_text.hpp"
 #include "apps/plot/write_file.hpp"
 #include "runtime/core/error.hpp"
@@ -12,11 +13,15 @@ void RowFiles::add_options(CommandLine& line) {
   line.option("--plot FILE", picture_, "with --study: draw them to this SVG file");
 }
 
-void RowFiles::check(bool is_study) const {
+void RowFiles::check(bool is_study, const std::string& trace) const {
   if (!picture_.empty() && !is_study)
     tess::fail(tess::ErrorCode::bad_argument, "--plot ", picture_, ": needs --study");
   plot::require_writable("--json", json_);
   plot::require_picture("--plot", picture_);
+  plot::FileNames names;
+  names.writes("--trace", trace);
+  names.writes("--json", json_);
+  names.writes_picture("--plot", picture_);
 }
 
 void RowFiles::write(const nlohmann::ordered_json& rows, const plot::Chart& chart) const {

@@ -12,8 +12,9 @@ namespace apps {
 class RowFiles {
  public:
   void add_options(CommandLine& line);
-  /// Throws tess::Error for a file that cannot be written, and for a picture without a study.
-  void check(bool is_study) const;
+  /// Throws tess::Error for a file that cannot be written, for two that are one (also `trace`, the
+  /// file of --trace), and for a picture without a study.
+  void check(bool is_study, const std::string& trace) const;
 
   /// What is asked for: the rows with the machine that they are from, and the picture.
   void write(const nlohmann::ordered_json& rows, const plot::Chart& chart) const;

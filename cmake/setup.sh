@@ -7,7 +7,7 @@
 #     --fuzz: also clang's libraries for tests/fuzz
 #     --with-browser: also Chromium for the test of the page of --monitor, which is skipped otherwise; about 100 MB
 #
-# Exit code 2, and nothing is changed, where apt would remove a package or where it may not install.
+# Exit code 2, and no package is changed, where apt would remove one, where it does not know one, or where it may not install.
 set -euo pipefail
 
 packages=(
@@ -56,19 +56,21 @@ fi
 # Names of packages that apt would remove; the list of packages may be old or empty on a new machine.
 removed() { apt-get install -s --no-install-recommends "${missing[@]}" 2>/dev/null | awk '$1 == "Remv" { print $2 }'; }
 known() { apt-get install -s --no-install-recommends "${missing[@]}" >/dev/null 2>&1; }
+first_error() { { apt-get install -s --no-install-recommends "${missing[@]}" 2>&1 || true; } | grep -m 1 '^E:'; }
 
 if $dry; then
   echo "setup: would install ${missing[*]}${run:+ (with sudo)}"
   known || echo "setup: apt does not know them all yet: it would fetch its lists first"
 elif ! known; then
   echo "setup: fetching apt's lists${run:+ (with sudo)}"
-  "${run[@]}" apt-get update -qq
+  "${run[@]}" apt-get update -qq || true  # what is missing then is found below
 fi
-lost=$(removed | paste -sd ' ' -)
+lost=$({ removed || true; } | paste -sd ' ' -)
 if [[ -n $lost ]]; then
   refuse "apt would remove $lost to install ${missing[*]}; nothing was changed. If that is Boost 1.74's (libboost-dev), keep it: unpack Boost 1.81 or later anywhere, install the others by hand, and configure with -DBoost_ROOT=<its folder>"
 fi
 if $dry; then exit 0; fi
+known || refuse "apt cannot install ${missing[*]}: $(first_error); nothing was changed. Check the network and apt's sources (Debian 12 has all of them)"
 echo "setup: installing ${missing[*]}${run:+ (with sudo)}"
 DEBIAN_FRONTEND=noninteractive "${run[@]}" apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
 echo "setup: done"

@@ -60,7 +60,8 @@ endfunction()
 
 # tess_library(NAME SOURCES … HEADERS … DEPENDS … USES … USES_TO_BUILD …): headers are listed so that a test compiles
 # each alone (not those of programs) and that they are installed. DEPENDS stand in the headers, USES in the sources only, and USES_TO_BUILD have
-# no library that a program would link. A library of a component (TESS_COMPONENT) is installed.
+# no library that a program would link. A library of a component (TESS_COMPONENT) is installed, but not by a project that
+# has Tessera as a subdirectory: it links what it needs into its programs.
 # Sanitizer builds make the libraries that a test needs.
 function(tess_library name)
   cmake_parse_arguments(ARG "" "" "SOURCES;HEADERS;DEPENDS;USES;USES_TO_BUILD" ${ARGN})
@@ -81,7 +82,7 @@ function(tess_library name)
   endif()
   list(TRANSFORM ARG_HEADERS REPLACE "/[^/]+/\\.\\./" "/")
   target_sources(${name} ${scope} FILE_SET HEADERS BASE_DIRS "${PROJECT_SOURCE_DIR}" FILES ${ARG_HEADERS})
-  if(TESS_COMPONENT)
+  if(TESS_COMPONENT AND PROJECT_IS_TOP_LEVEL)
     install(TARGETS ${name} EXPORT Tessera_${TESS_COMPONENT} FILE_SET HEADERS DESTINATION include/tessera)
   endif()
   list(FILTER ARG_SOURCES EXCLUDE REGEX "^/")  # generated

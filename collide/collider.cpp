@@ -116,18 +116,22 @@ Task search(Collider collider, std::uint64_t step, Report report) {
 }
 
 /// Finds pairs to keep. Sets `too_many` if they are, and then nothing is kept; if they are by far,
-/// larger boxes are not searched.
+/// or if a larger box has a coordinate without a cell, larger boxes are not searched.
 Task find_kept(Collider collider, std::uint64_t step, bool& too_many) {
   const std::uint64_t own_step = remaining(collider).new_step();
   Future<Summary> known;
   collider.neighbours.broadcast<&Neighbours::enlarge>(
       step, own_step, true, n_sampled_per_pe(Point{0, 0, 0}, n_pes()), known.callback());
   Summary summary = co_await known;
-  too_many = are_far_too_many(summary, collider.options.rules.touching, n_pes());
+  too_many = are_far_too_many(summary, collider.options.rules, n_pes());
   if (too_many) summary = {};  // nothing is searched
   const Report to_neighbours{
       report_to_neighbours(collider.neighbours, step), {}, Receivers::one_owner};
-  co_await collide_taken(collider, own_step, summary, to_neighbours);
+  try {
+    co_await collide_taken(collider, own_step, summary, to_neighbours);
+  } catch (const Error&) {
+    too_many = true;  // the boxes as they are may have cells
+  }
   if (too_many) co_return;
   Future<bool> counted;
   collider.neighbours.broadcast<&Neighbours::count>(step, counted.callback());

@@ -93,6 +93,7 @@ Task transfer_cells(const TetMesh& source, const std::vector<Field>& fields, con
   const Layout give{n_parts, halo, method, form, options.kind == TransferKind::nearest};
   const Layout take{n_parts, 0, method, CellForm::constant, interpolates};
   choose_coupling(options, form);
+  check(options);  // before there are pieces
   ArrayProxy<CellWorker> from, to;
   co_await epoch([&] {
     from = scatter_cells(source, fields, give);
@@ -100,8 +101,10 @@ Task transfer_cells(const TetMesh& source, const std::vector<Field>& fields, con
   });
   Coupling coupling(from, to, options);
   co_await coupling.search(&outcome->search);
-  if (options.on_phase) options.on_phase("apply");
-  co_await coupling.apply<&CellWorker::values, &CellWorker::result>();
+  if (!fields.empty()) {
+    if (options.on_phase) options.on_phase("apply");
+    co_await coupling.apply<&CellWorker::values, &CellWorker::result>();
+  }
   Future<Outcome> gathered;
   to.broadcast<&CellWorker::gather>(coupling.id(), gathered.callback());
   const Outcome all = co_await gathered;

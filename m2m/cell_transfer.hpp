@@ -12,9 +12,10 @@
 // | `conservative_lumped`  | mean over what overlaps it of the source cells' values    | 1     |
 //
 // Kinds with gradients are exact for linear fields; limits lower the order at extrema and
-// boundaries. An element that was split is one cell of the source (TetMesh::element_of_tet). In the
-// target each of its tetrahedra gets a value of its own. The result depends only on the meshes and
-// the fields, as for transfers between vertices.
+// boundaries. Across a single layer of elements, flat or curved, the gradient is zero. An element
+// that was split is one cell of the source (TetMesh::element_of_tet). In the target each of its
+// tetrahedra gets a value of its own. The result depends only on the meshes and the fields, as for
+// transfers between vertices.
 #pragma once
 
 #include "m2m/field.hpp"
@@ -34,9 +35,12 @@ struct CellOutcome {
 };
 
 /// `fields`: n_tets rows of the source each; the tetrahedra of an element have the same value. Cuts
-/// each mesh into `n_parts`. Target cells that the policy keeps have the value 0. Throws Error
-/// (bad_argument) for a kind and a policy that do not go together: only kind nearest has a nearest
-/// cell, and none that is outside. `source`, `fields` and `target` outlive the task.
+/// each mesh into `n_parts`. Target cells that the policy keeps have the value 0. Without fields it
+/// finds the status of the target's cells. `source`, `fields` and `target` outlive the task.
+///
+/// Throws Error (bad_argument), before anything is sent, for a kind and a policy that do not go
+/// together (only kind nearest has a nearest cell, and none that is outside), for a tolerance that
+/// is not from 0 to 1e100, and for a tolerance or clamp with conservative kinds.
 Task transfer_cells(const TetMesh& source, const std::vector<Field>& fields, const TetMesh& target,
                     std::int32_t n_parts, PartitionMethod method, TransferOptions options,
                     CellOutcome* outcome);

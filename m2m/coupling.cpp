@@ -36,7 +36,8 @@ bool has_ended(CollectionId id) {
   return ArrayProxy<Ledger>(id).ended();
 }
 
-/// Throws Error (bad_argument) if options contradict each other.
+}  // namespace
+
 void check(const CouplingOptions& options) {
   if (!(options.tolerance >= 0 && options.tolerance <= 1e100))
     fail(ErrorCode::bad_argument, "tolerance ", options.tolerance,
@@ -68,8 +69,6 @@ void check(const CouplingOptions& options) {
          " with source values in cells has no nearest vertex for points outside: choose policy "
          "keep or value, or a tolerance");
 }
-
-}  // namespace
 
 namespace detail {
 

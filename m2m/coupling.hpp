@@ -83,6 +83,9 @@ struct CouplingOptions {
   std::function<void(const char*)> on_phase{};
 };
 
+/// Throws Error (bad_argument) if options contradict each other. The first search does that, too.
+void check(const CouplingOptions& options);
+
 /// Times and counts of a search. Times are wall-clock seconds on the calling PE.
 struct SearchSummary {
   double broad = 0;   ///< covers, voxels, pairs of pieces that are near

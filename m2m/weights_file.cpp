@@ -28,10 +28,11 @@ class WeightsReader {
     header_ = read_netcdf_header(path, bytes);
   }
 
+  [[nodiscard]] std::size_t n_bytes() const { return file_.view().size(); }
   [[nodiscard]] std::uint64_t length(std::string_view name) const {
     for (const NetcdfDimension& dimension : header_.dimensions)
       if (dimension.name == name) {
-        if (dimension.length == 0 && header_.n_records != 0)
+        if (dimension.length == 0)
           fail(ErrorCode::bad_file, path_, ": dimension ", name,
                " is the record dimension; fix it with ncks --fix_rec_dmn all");
         return dimension.length;
@@ -80,6 +81,48 @@ class WeightsReader {
   FileBytes file_;
   NetcdfHeader header_;
 };
+
+void check_sizes_fit(std::int64_t n_columns, std::int64_t n_rows, const std::string& path,
+                     const TetMesh& source, const TetMesh& target) {
+  if (n_columns == static_cast<std::int64_t>(source.n_points()) &&
+      n_rows == static_cast<std::int64_t>(target.n_points()))
+    return;
+  fail(ErrorCode::bad_value, path, ": holds weights from ", n_columns, " to ", n_rows,
+       " vertices, but ", source.name, " has ", source.n_points(), " and ", target.name, " has ",
+       target.n_points(), "; give the meshes that it was written for");
+}
+
+WeightMatrix read_matrix(const WeightsReader& file, const std::string& path) {
+  const std::uint64_t n_columns = file.length("n_a"), n_rows = file.length("n_b");
+  constexpr auto most = static_cast<std::uint64_t>(std::numeric_limits<VertexId>::max());
+  if (n_columns > most || n_rows > most)
+    fail(ErrorCode::bad_file, path, ": has ", n_columns, " source and ", n_rows,
+         " target vertices; at most ", most, " are supported");
+  const auto columns = file.list<std::int64_t>("col"), rows = file.list<std::int64_t>("row");
+  const auto weights = file.list<double>("S");
+  WeightMatrix matrix;
+  matrix.n_columns = static_cast<std::int64_t>(n_columns);
+  std::vector<std::uint64_t>& begin = matrix.rows.begin;
+  begin.assign(n_rows + 1, 0);
+  for (std::size_t k = 0; k < weights.size(); ++k) {
+    if (rows[k] < 1 || rows[k] > static_cast<std::int64_t>(n_rows) || columns[k] < 1 ||
+        columns[k] > matrix.n_columns || !std::isfinite(weights[k]))
+      fail(ErrorCode::bad_value, path, ": weight ", k + 1, " of ", weights.size(), " is ",
+           weights[k], " from vertex ", columns[k], " of ", n_columns, " to vertex ", rows[k],
+           " of ", n_rows, "; write the file again");
+    ++begin[static_cast<std::size_t>(rows[k])];
+  }
+  for (std::size_t row = 0; row < n_rows; ++row) begin[row + 1] += begin[row];
+  std::vector<std::uint64_t> next(begin.begin(), begin.end() - 1);
+  matrix.rows.columns.resize(weights.size());
+  matrix.rows.weights.resize(weights.size());
+  for (std::size_t k = 0; k < weights.size(); ++k) {
+    const std::uint64_t to = next[static_cast<std::size_t>(rows[k] - 1)]++;
+    matrix.rows.columns[to] = static_cast<VertexId>(columns[k] - 1);
+    matrix.rows.weights[to] = weights[k];
+  }
+  return matrix;
+}
 
 }  // namespace
 
@@ -130,45 +173,25 @@ void write_weights(const std::string& path, const WeightMatrix& matrix) {
 
 WeightMatrix read_weights(const std::string& path) {
   const WeightsReader file(path);
-  const std::uint64_t n_columns = file.length("n_a"), n_rows = file.length("n_b");
-  constexpr auto most = static_cast<std::uint64_t>(std::numeric_limits<VertexId>::max());
-  if (n_columns == 0 || n_columns > most || n_rows == 0 || n_rows > most)
-    fail(ErrorCode::bad_file, path, ": has ", n_columns, " source and ", n_rows,
-         " target vertices; from 1 to ", most, " are supported");
-  const auto columns = file.list<std::int64_t>("col"), rows = file.list<std::int64_t>("row");
-  const auto weights = file.list<double>("S");
-  WeightMatrix matrix;
-  matrix.n_columns = static_cast<std::int64_t>(n_columns);
-  std::vector<std::uint64_t>& begin = matrix.rows.begin;
-  begin.assign(n_rows + 1, 0);
-  for (std::size_t k = 0; k < weights.size(); ++k) {
-    if (rows[k] < 1 || rows[k] > static_cast<std::int64_t>(n_rows) || columns[k] < 1 ||
-        columns[k] > matrix.n_columns || !std::isfinite(weights[k]))
-      fail(ErrorCode::bad_value, path, ": weight ", k + 1, " of ", weights.size(), " is ",
-           weights[k], " from vertex ", columns[k], " of ", n_columns, " to vertex ", rows[k],
-           " of ", n_rows, "; write the file again");
-    ++begin[static_cast<std::size_t>(rows[k])];
-  }
-  for (std::size_t row = 0; row < n_rows; ++row) begin[row + 1] += begin[row];
-  std::vector<std::uint64_t> next(begin.begin(), begin.end() - 1);
-  matrix.rows.columns.resize(weights.size());
-  matrix.rows.weights.resize(weights.size());
-  for (std::size_t k = 0; k < weights.size(); ++k) {
-    const std::uint64_t to = next[static_cast<std::size_t>(rows[k] - 1)]++;
-    matrix.rows.columns[to] = static_cast<VertexId>(columns[k] - 1);
-    matrix.rows.weights[to] = weights[k];
-  }
-  return matrix;
+  // Rows without weights need no bytes in the file, but memory.
+  constexpr std::uint64_t few = 1U << 24U, most_per_byte = 1000;
+  const std::uint64_t n_rows = file.length("n_b");
+  if (n_rows > few && n_rows / most_per_byte > file.n_bytes())
+    fail(ErrorCode::bad_file, path, ": has ", n_rows, " target vertices in ", file.n_bytes(),
+         " bytes; write the file again, or read it with the meshes that it is for");
+  return read_matrix(file, path);
+}
+
+WeightMatrix read_weights(const std::string& path, const TetMesh& source, const TetMesh& target) {
+  const WeightsReader file(path);
+  check_sizes_fit(static_cast<std::int64_t>(file.length("n_a")),
+                  static_cast<std::int64_t>(file.length("n_b")), path, source, target);
+  return read_matrix(file, path);
 }
 
 void check_fits(const WeightMatrix& matrix, const std::string& path, const TetMesh& source,
                 const TetMesh& target) {
-  if (matrix.n_columns == static_cast<std::int64_t>(source.n_points()) &&
-      matrix.n_rows() == static_cast<std::int64_t>(target.n_points()))
-    return;
-  fail(ErrorCode::bad_value, path, ": holds weights from ", matrix.n_columns, " to ",
-       matrix.n_rows(), " vertices, but ", source.name, " has ", source.n_points(), " and ",
-       target.name, " has ", target.n_points(), "; give the meshes that it was written for");
+  check_sizes_fit(matrix.n_columns, matrix.n_rows(), path, source, target);
 }
 
 void apply(const WeightMatrix& matrix, std::span<const double> values, std::size_t n_components,

@@ -45,8 +45,12 @@ void write_weights(const std::string& path, const WeightMatrix& matrix);
 
 /// The order of rows in the file does not matter; within a row the columns keep it. Throws Error
 /// (bad_file) if the file is damaged or has another layout, (bad_value) with the weight that names
-/// a vertex out of range or is not finite.
+/// a vertex out of range or is not finite. Rows take 8 bytes of memory each, also those without
+/// weights: more than 2^24 rows, and than 1 000 per byte of the file, are damage.
 [[nodiscard]] WeightMatrix read_weights(const std::string& path);
+/// The same with check_fits(), before anything is allocated; there may be any number of rows.
+[[nodiscard]] WeightMatrix read_weights(const std::string& path, const TetMesh& source,
+                                        const TetMesh& target);
 
 /// Throws Error (bad_value) with both sizes unless the matrix is of these meshes. `path`: of the
 /// file that it comes from.

@@ -4,6 +4,7 @@
 #include "m2m/io/vtu/vtu_writer.hpp"
 #include "runtime/core/error.hpp"
 
+#include <algorithm>
 #include <fmt/core.h>
 
 namespace tess::m2m {
@@ -38,6 +39,12 @@ Task write_pvtu(std::string path, DistributedMesh mesh, std::vector<std::string>
     fail(ErrorCode::bad_argument, path, ": a file that names parts ends in .pvtu; rename it");
   const std::string stem = path.substr(0, path.size() - ending.size());
   names.emplace_back("status");
+  for (auto name = names.begin(); name != names.end(); ++name) {
+    if (name->empty()) fail(ErrorCode::bad_argument, path, ": a field has no name; name it");
+    if (std::find(names.begin(), name, *name) != name)
+      fail(ErrorCode::bad_argument, path, ": two fields have the name '", *name,
+           "'; give each field a name of its own, other than 'status'");
+  }
   NewFile file(path);  // refuses a folder that cannot be written, before a part does
   file.write(index_of_parts(stem, mesh.n_parts, names));
   co_await epoch([&] { mesh.workers.broadcast<&Worker::share_status>(); });

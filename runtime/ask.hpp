@@ -260,7 +260,8 @@ class [[nodiscard]] Ask final : public detail::AskOf<detail::ReplyValue<F>> {
   Ask(CollectionId collection, const Index& index) : collection_(collection), index_(index) {}
 
   /// If no reply has come after this time from now, the asker gets an Error that names the element,
-  /// the function and the time. A reply that comes later is dropped and counted.
+  /// the function and the time. A reply that comes later is dropped and counted; but where the PE is
+  /// busy beyond the limit, one that runs before the timer is taken.
   [[nodiscard]] Ask within(std::chrono::nanoseconds limit) && {
     this->set_deadline(limit);
     return std::move(*this);

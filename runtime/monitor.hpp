@@ -9,12 +9,15 @@
 // Otherwise, or without --monitor, the function is not called.
 #pragma once
 
+#include "runtime/core/algorithm.hpp"
 #include "runtime/core/check.hpp"
 #include "runtime/monitor/monitor.hpp"
 #include "runtime/scheduler/runtime.hpp"
 
+#include <cmath>
 #include <concepts>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -30,7 +33,7 @@ struct Picture {
   std::vector<double> values;          ///< of the part; not finite: drawn as the least
 };
 
-/// Shows what `picture()` returns. `part` distinguishes the parts of a picture that one PE shows:
+/// Shows what `picture()` returns; a page has pictures of at most 16 names. `part` distinguishes the parts of a picture that one PE shows:
 /// it takes one of each between two samples. Parts of different times may meet in a picture.
 template <std::invocable F>
   requires std::same_as<std::invoke_result_t<F>, Picture>
@@ -49,7 +52,11 @@ void show(std::string_view name, std::uint64_t part, F&& picture) {
              " columns at ", of.x, ",", of.y, " do not fit into a picture of ", of.width, " x ",
              of.height, " (at most 2^20 pixels)");
   detail::PicturePart out{std::string(name), of.width, of.height, of.x, of.y, of.columns, {}};
-  out.values.assign(of.values.begin(), of.values.end());
+  constexpr double most = std::numeric_limits<float>::max();
+  out.values.reserve(of.values.size());
+  for (const double value : of.values)
+    out.values.push_back(
+        static_cast<float>(std::isfinite(value) ? std::clamp(value, -most, most) : value));
   detail::send_part(pe, std::move(out));
 }
 /// Shows the running element's part of a picture.

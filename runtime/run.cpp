@@ -57,7 +57,7 @@ MonitorOptions monitor_options(std::string_view value, std::string_view token) {
     std::string_view address = value.substr(0, colon);
     if (address.starts_with('[') && address.ends_with(']'))
       address = address.substr(1, address.size() - 2);
-    options.address = address;
+    if (address != "localhost") options.address = address;
     port = value.substr(colon + 1);
   }
   const auto number = parse_number<std::uint16_t>(port);
@@ -65,6 +65,11 @@ MonitorOptions monitor_options(std::string_view value, std::string_view token) {
     fail(ErrorCode::bad_argument, "--monitor ", value,
          " is not a port of 0 … 65535, or ADDRESS:PORT");
   options.port = *number;
+  // It stands in addresses, where other characters mean something.
+  for (const char c : token)
+    if (std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '-' && c != '.' && c != '_')
+      fail(ErrorCode::bad_argument, "--monitor-token ", token, ": '", std::string_view(&c, 1),
+           "' cannot be in a token: use letters, digits, '-', '.' and '_'");
   const bool is_loopback = options.address.starts_with("127.") || options.address == "::1";
   if (!is_loopback && token.empty())
     fail(ErrorCode::bad_argument, "--monitor ", value,
@@ -185,6 +190,8 @@ MachineChoice take_values(int& argc, char** argv, RuntimeOptions& options) {
     }
   }
   argc = kept;
+  if (!monitor && !token.empty())
+    fail(ErrorCode::bad_argument, "--monitor-token ", token, " is for --monitor, which is missing");
   if (monitor) options.monitor = monitor_options(*monitor, token);
   return choice;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 
 namespace amr {
@@ -10,7 +11,7 @@ namespace amr {
 struct Norms {
   std::int64_t mass = 0;        ///< quanta
   std::int64_t l1 = 0, l2 = 0;  ///< of the integrals of |error| and error², 2^-60 each
-  double linf = 0, largest = 0, least = 0;
+  double linf = 0, largest = -HUGE_VAL, least = HUGE_VAL;
   std::uint64_t hash = 0;
 };
 

@@ -122,7 +122,7 @@ int start(tess::Setup& setup, int argc, char** argv) {
   std::ranges::copy(centre, problem.centre.begin());
   problem.corrected = !options.uncorrected;
   problem.complete();
-  if (!balance.empty()) {
+  if (line.is_given("--balance")) {
     settings.balance = tess::parse_balance(balance);
     if (settings.balance->when == tess::BalanceWhen::periodic)
       tess::fail(tess::ErrorCode::bad_argument, "--balance ", balance,
@@ -133,10 +133,13 @@ int start(tess::Setup& setup, int argc, char** argv) {
   if ((options.study || options.stability) && settings.checkpoints.are_used())
     tess::fail(tess::ErrorCode::bad_argument,
                "--checkpoint and --restart: not for --study and --stability");
-  if (options.stability && line.is_given("--json"))
-    tess::fail(tess::ErrorCode::bad_argument, "--json ", line.value("--json"),
-               ": --stability prints its rows only");
-  options.files.check(options.study);
+  if (options.study && line.is_given("--order")) apps::refuse_together("--order", "--study");
+  if (options.stability)  // its cases have their own problems
+    for (const char* name :
+         {"--max-level", "--least-level", "--cells", "--order", "--cfl", "--time", "--steps",
+          "--width", "--velocity", "--centre", "--refine", "--change-every", "--balance", "--json"})
+      if (line.is_given(name)) apps::refuse_together(name, "--stability");
+  options.files.check(options.study, setup.options.trace);
   return tess::run(setup,
                    [&] { return options.stability ? check_stability(options) : run_all(options); });
 }

@@ -35,9 +35,12 @@ void Problem::complete() {
       tess::fail(ErrorCode::bad_argument, "--time: ", end, " takes ", n, " steps, and at most ",
                  most_steps, " are run: give at most ",
                  most_steps * cfl * spacing(most_level) / fastest);
-    n_steps = static_cast<std::int32_t>(n);
+    n_steps = std::max(1, static_cast<std::int32_t>(n));
   } else
     end = n_steps * cfl * spacing(most_level) / fastest;
+  if (!std::isfinite(end))
+    tess::fail(ErrorCode::bad_argument, "--velocity: ", fastest,
+               " takes endless time through a cell: give a larger one, or --time");
   dt = end / n_steps;
   double mass = 1;
   for (std::int32_t axis = 0; axis < 3; ++axis) mass *= mean(axis, 0, 1, 0);

@@ -7,7 +7,7 @@
 
 #include <algorithm>
 #include <chrono>
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 using namespace tess::balance;
 
@@ -34,6 +34,11 @@ bool row(const std::string& scene, const Snapshot& s, const std::string& name) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  const std::vector<std::string> strategies = strategy_names();
+  if (argc > 2 || (argc == 2 && std::ranges::find(strategies, argv[1]) == strategies.end())) {
+    fmt::print(stderr, "usage: bench_balance [STRATEGY], one of {}\n", fmt::join(strategies, ", "));
+    return 2;
+  }
   const std::vector<std::pair<std::string, Snapshot>> scenes = {
       {"mod 7, 64 on 4", mod_seven(Start::blocks)},
       {"mod 7, all on PE 0", mod_seven(Start::all_on_first)},
@@ -43,7 +48,7 @@ int main(int argc, char** argv) {
              "spread ms", "max/avg", "moves", "ext. bytes");
   bool good = true;
   for (const auto& [scene, s] : scenes)
-    for (const std::string& name : strategy_names()) {
+    for (const std::string& name : strategies) {
       if (argc > 1 && name != argv[1]) continue;
       if (s.elements.position.empty() && (name == "rcb" || name == "hilbert")) continue;
       good = row(scene, s, name) && good;

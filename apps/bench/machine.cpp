@@ -234,7 +234,11 @@ void bench_threads() {
 }  // namespace tess::detail
 
 int main(int argc, char** argv) {
-  const bool multiple = argc > 1 && std::strcmp(argv[1], "--multiple") == 0;
+  const bool multiple = argc == 2 && std::strcmp(argv[1], "--multiple") == 0;
+  if (argc > 1 && !multiple) {
+    fmt::print(stderr, "usage: bench_machine [--multiple], which asks MPI for all threads\n");
+    return 2;
+  }
   if (tess::under_mpirun())
     tess::detail::bench_processes(argc, argv,
                                   multiple ? MPI_THREAD_MULTIPLE : MPI_THREAD_SERIALIZED);

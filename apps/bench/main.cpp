@@ -97,6 +97,9 @@ int main(int argc, char** argv) {
                 "measure what a simulated machine needs, and write it to a file for --sim");
     if (!line.parse(argc, argv)) return 0;
     if (options.quick && !repeat.is_given()) options.repeat = 1;
+    if (!calibrated.empty())
+      for (const char* other : {"NAME", "--repeat", "--list", "--json"})
+        if (line.is_given(other)) apps::refuse_together(other, "--calibrate " + calibrated);
     plot::require_writable("--json", options.json);
 
     bench::Bench bench(options, command_line, *setup.machine);

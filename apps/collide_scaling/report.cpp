@@ -64,7 +64,12 @@ void draw(const std::string& prefix, const std::vector<Row>& rows) {
          is_strong ? 1e3 * total_seconds(row) : 100 * efficiency(row, rows.front())});
   }
   if (!is_strong) {
-    chart.series.front().name = "measured work and messages";
+    const std::string what = rows.front().given.work == Work::measured
+                                 ? "measured work and messages"
+                                 : "modelled work and messages";
+    const bool is_one = chart.series.size() == 1;
+    for (plot::Series& series : chart.series)
+      series.name = is_one ? what : what + ", " + series.name;
     chart.series.push_back({.name = "Lawlor and Kalé 2002, 1500 PEs",
                             .points = {{1500, 60}},
                             .style = plot::Style::points});

@@ -153,10 +153,10 @@ int main(int argc, char** argv) {
     if (substeps.is_given() && options.reaction.factor == 0)
       tess::fail(tess::ErrorCode::bad_argument, "--substeps ", options.reaction.n_substeps,
                  " are those of a reaction, and there is none; give --reaction, too");
-    if (balance_every.is_given() && balance.empty())
+    if (balance_every.is_given() && !line.is_given("--balance"))
       tess::fail(tess::ErrorCode::bad_argument, "--balance-every ", options.balance_every,
                  " is for a balancer, and there is none; give --balance, too");
-    if (!balance.empty()) {
+    if (line.is_given("--balance")) {
       options.balance = tess::parse_balance(balance);
       if (options.balance->when == tess::BalanceWhen::periodic)
         tess::fail(tess::ErrorCode::bad_argument, "--balance ", balance,

@@ -163,7 +163,7 @@ void Slab::received(CouplingId coupling) {
 void Slab::compare(double time, tess::Callback<Outcome> result) {
   Outcome mine{0, 0, n_taken_};
   for (std::size_t node = 0; node < n_owned(); ++node) {
-    mine.error = std::max(mine.error, std::abs(values_[node] - exact(points_[node], time)));
+    apps::worsen(mine.error, std::abs(values_[node] - exact(points_[node], time)));
     const std::pair<tess::m2m::GlobalId, double> whole{point_ids_[node], values_[node]};
     mine.hash += tess::hash_bytes(&whole, sizeof whole);
   }

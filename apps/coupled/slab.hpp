@@ -8,6 +8,7 @@
 #pragma once
 
 #include "apps/coupled/reaction.hpp"
+#include "apps/worst.hpp"
 #include "m2m/coupling.hpp"
 #include "runtime/runtime.hpp"
 
@@ -54,7 +55,9 @@ struct Outcome {
 };
 struct JoinOutcomes {
   Outcome operator()(const Outcome& a, const Outcome& b) const {
-    return {std::max(a.error, b.error), a.hash + b.hash, a.n_taken + b.n_taken};
+    Outcome both{a.error, a.hash + b.hash, a.n_taken + b.n_taken};
+    apps::worsen(both.error, b.error);
+    return both;
   }
 };
 

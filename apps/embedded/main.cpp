@@ -7,8 +7,12 @@
 
 #include <mpi.h>
 
+#include <algorithm>
 #include <array>
+#include <cstdio>
+#include <string>
 #include <string_view>
+#include <vector>
 
 namespace {
 
@@ -69,7 +73,8 @@ int phases(int argc, char** argv, const Ring& of_all) {
     const int code = tess::run(argc, arguments.data(), [] { return add_up(); });
 
     const bool ring_is_right = ring.end(phase);
-    const bool is_right = code == 0 && ring_is_right && (ring.rank != 0 || total == expected);
+    if (code != 0) return code;  // the run has said why
+    const bool is_right = ring_is_right && (ring.rank != 0 || total == expected);
     if (!is_right) ++n_wrong;
     if (ring.rank == 0)
       tess::print(names[static_cast<std::size_t>(phase)], " run: the numbers of ", ring.n,
@@ -80,26 +85,52 @@ int phases(int argc, char** argv, const Ring& of_all) {
   return all_wrong == 0 ? 0 : 1;
 }
 
+/// The thread level that `--level` names; -1 for another word.
+int level_of(std::string_view word) {
+  if (word == "single") return MPI_THREAD_SINGLE;
+  return word == "funneled" ? MPI_THREAD_FUNNELED : -1;
+}
+
+bool is_help(std::string_view option) {
+  return option == "--help" || option == "-h";
+}
+
 }  // namespace
 
 /// `--level single` and `--level funneled` show what a run says of a level that is too low.
 int main(int argc, char** argv) {
+  const bool asks_for_help = std::any_of(argv + 1, argv + argc, is_help);
   int level = MPI_THREAD_SERIALIZED;
-  if (argc > 2 && std::string_view(argv[1]) == "--level") {
-    level = std::string_view(argv[2]) == "single" ? MPI_THREAD_SINGLE : MPI_THREAD_FUNNELED;
-    for (int i = 3; i <= argc; ++i) argv[i - 2] = argv[i];
-    argc -= 2;
+  std::string word;
+  char** const end = argv + argc;
+  char** const option = std::find(argv + 1, end, std::string_view("--level"));
+  if (option != end) {
+    char** const value = option + 1;
+    if (value != end) word = *value;
+    level = level_of(word);
+    char** const rest = value != end ? value + 1 : end;
+    std::copy(rest, end + 1, option);  // with the null pointer behind them
+    argc -= static_cast<int>(rest - option);
   }
   int provided = 0;
-  MPI_Init_thread(&argc, &argv, level, &provided);
+  MPI_Init_thread(&argc, &argv, std::max(level, int{MPI_THREAD_SINGLE}), &provided);
   Ring ring;
   MPI_Comm_rank(MPI_COMM_WORLD, &ring.rank);
   MPI_Comm_size(MPI_COMM_WORLD, &ring.n);
   int code = 0;
-  if (level < MPI_THREAD_SERIALIZED)
+  if (asks_for_help) {
+    if (ring.rank == 0)
+      tess::print("usage: embedded [--level single|funneled] [options]\n", tess::options_help());
+  } else if (level < 0) {
+    if (ring.rank == 0)
+      std::fprintf(stderr, "embedded: error: --level '%s': give single or funneled\n",
+                   word.c_str());
+    code = 2;
+  } else if (level < MPI_THREAD_SERIALIZED) {
     code = tess::run(argc, argv, [] { return add_up(); });
-  else
+  } else {
     code = phases(argc, argv, ring);
+  }
   MPI_Finalize();
   return code;
 }

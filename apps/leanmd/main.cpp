@@ -3,6 +3,7 @@
 #include "apps/leanmd/report.hpp"
 #include "apps/leanmd/stability.hpp"
 #include "apps/leanmd/study.hpp"
+#include "apps/plot/file_names.hpp"
 #include "apps/plot/write_file.hpp"
 #include "apps/wrong_answer.hpp"
 
@@ -41,6 +42,11 @@ tess::Task run_study(Settings s) {
   tess::print(study_table(rows));
   if (!s.json.empty()) plot::write_file(s.json, study_json(rows));
   if (!s.plot.empty()) draw_study(s.plot, rows);
+  for (const StudyRow& row : rows)
+    if (row.is_wrong) {
+      apps::end_with(fmt::format("leanmd: --dt {}: {}", row.dt, row.error));
+      co_return;
+    }
 }
 
 tess::Task run_stability(Settings s) {
@@ -58,7 +64,7 @@ template <class... Text>
 }
 
 /// What no single option can be checked for.
-void check(Settings& s) {
+void check(Settings& s, const std::string& trace) {
   Problem& p = s.options.problem;
   if (!(s.density > 0 && s.density <= 1))
     refuse("--density: ", s.density, " is not above 0 and at most 1");
@@ -81,11 +87,13 @@ void check(Settings& s) {
   if (4 * p.box.least_cell_edge() < p.cutoff + p.skin)
     refuse("--cells: a cell of edge ", p.box.least_cell_edge(),
            " is shorter than a quarter of --cutoff and --skin; give fewer cells");
-  if (!s.balance.empty()) s.options.balance = tess::parse_balance(s.balance);
   if (s.study && !(p.dt >= 8 * least_dt && p.dt <= 0.5 && s.options.n_steps >= 1))
     refuse("--study: takes steps of an eighth to twice of --dt ", p.dt,
            ", from 1e-5 to 1, and at least one of --steps ", s.options.n_steps);
   if (s.study && s.stability) apps::refuse_together("--study", "--stability");
+  if (s.stability && !s.json.empty()) apps::refuse_together("--json " + s.json, "--stability");
+  if (s.explain && (s.study || s.stability))
+    apps::refuse_together("--explain", s.study ? "--study" : "--stability");
   if ((s.study || s.stability) && s.options.checkpoints.are_used())
     refuse("--checkpoint and --restart: not for --study and --stability");
   if (s.explain && s.options.checkpoints.restarts())
@@ -93,6 +101,10 @@ void check(Settings& s) {
   if (!s.plot.empty() && !s.study) refuse("--plot ", s.plot, ": is for --study");
   plot::require_writable("--json", s.json);
   plot::require_picture("--plot", s.plot);
+  plot::FileNames names;
+  names.writes("--trace", trace);
+  names.writes("--json", s.json);
+  names.writes_picture("--plot", s.plot);
 }
 
 int run(tess::Setup& setup, int argc, char** argv) {
@@ -131,7 +143,8 @@ int run(tess::Setup& setup, int argc, char** argv) {
   s.options.checkpoints.check(
       line, {"--cells", "--atoms", "--dt", "--cutoff", "--density", "--gradient", "--temperature",
              "--seed", "--exchange", "--skin", "--every"});
-  check(s);
+  if (line.is_given("--balance")) s.options.balance = tess::parse_balance(s.balance);
+  check(s, setup.options.trace);
   apps::Progress progress(setup.machine->process() == tess::ProcessId{0} ? stderr : nullptr);
   s.options.progress = &progress;
   return tess::run(setup, [&]() -> tess::Task {

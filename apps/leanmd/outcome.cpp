@@ -29,8 +29,10 @@ void Outcome::add(const Totals& totals, const Problem& problem, const Conserved&
     energies.resize(static_cast<std::size_t>(std::max(1, totals.trouble.step)));
   } else if (n_atoms != kept.n_atoms) {
     error = fmt::format("{} atoms of {} are there", n_atoms, kept.n_atoms);
+    is_wrong = true;
   } else if (totals.momentum != kept.momentum) {
     error = "the total momentum has changed: a force was lost or doubled";
+    is_wrong = true;
   } else if (drift() > unstable_share * kinetic()) {
     error = fmt::format(
         "unstable until step {}: the total energy per atom changed by {:.3g}, the kinetic energy "
@@ -48,8 +50,9 @@ void Outcome::compare_forces(const Problem& problem, const std::vector<AtomForce
   wrong_forces = std::max<std::int64_t>(0, wrong_forces);
   for (std::size_t i = 0; i < all.size(); ++i)
     wrong_forces += all[i].second == expected.on[i] ? 0 : 1;
-  if (wrong_forces != 0)
-    error = fmt::format("{} forces differ from those of all pairs", wrong_forces);
+  if (wrong_forces == 0) return;
+  error = fmt::format("{} forces differ from those of all pairs", wrong_forces);
+  is_wrong = true;
 }
 
 double Outcome::energy() const {

@@ -23,6 +23,7 @@ struct Outcome {
   std::uint64_t first_hash = 0, hash = 0;
   std::int64_t wrong_forces = -1;  ///< atoms whose force is not that of all pairs; -1: not compared
   std::string error;  ///< why the run ended early, or what is wrong with its result; empty: none
+  bool is_wrong = false;  ///< the error is a wrong result, of which no option is the cause
   double seconds = 0;
   std::vector<tess::balance::Round> rounds;
 

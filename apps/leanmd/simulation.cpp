@@ -134,8 +134,11 @@ tess::Task Simulation::return_to_start() {
   std::uint64_t hash = 0;
   for (const auto& [atom, force] : all) hash += hash_of(atom);
   forth.error = state_.outcome.error;
-  if (hash != forth.first_hash && forth.error.empty())
+  forth.is_wrong = state_.outcome.is_wrong;
+  if (hash != forth.first_hash && forth.error.empty()) {
     forth.error = "with reversed velocities the run did not return to its start";
+    forth.is_wrong = true;
+  }
   state_.outcome = std::move(forth);
 }
 

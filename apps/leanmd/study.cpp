@@ -21,18 +21,18 @@ tess::Task study(Options options, InitialState state, std::vector<StudyRow>& row
     Outcome outcome;
     co_await simulate(options, initial_atoms(state, motion), outcome);
     StudyRow row{options.problem.dt, options.n_steps, outcome.drift(), outcome.seconds, 0,
-                 outcome.error};
+                 outcome.error,      outcome.is_wrong};
     if (!rows.empty() && rows.back().error.empty() && row.drift > 0 && rows.back().drift > 0)
       row.order = std::log(rows.back().drift / row.drift) / std::log(rows.back().dt / row.dt);
     rows.push_back(row);
   }
 }
 
-double fitted_order(const std::vector<StudyRow>& rows) {
+std::optional<double> fitted_order(const std::vector<StudyRow>& rows) {
   std::vector<plot::Point> drifts;
   for (const StudyRow& row : rows)
     if (row.error.empty()) drifts.push_back({row.dt, row.drift});
-  return plot::fitted_power(drifts).value_or(0);
+  return plot::fitted_power(drifts);
 }
 
 std::string study_table(const std::vector<StudyRow>& rows) {
@@ -46,10 +46,9 @@ std::string study_table(const std::vector<StudyRow>& rows) {
     out += fmt::format("{:>10.4g}{:>8}{:>14.3e}{:>8}{:>12.4f}\n", row.dt, row.n_steps, row.drift,
                        row.order == 0 ? "-" : fmt::format("{:.2f}", row.order), row.seconds);
   }
-  return out + fmt::format(
-                   "fitted order {:.2f}; drift: greatest change of the total energy per "
-                   "atom\n",
-                   fitted_order(rows));
+  const std::optional<double> order = fitted_order(rows);
+  return out + fmt::format("fitted order {}; drift: greatest change of the total energy per atom\n",
+                           order ? fmt::format("{:.2f}", *order) : "-");
 }
 
 std::string study_json(const std::vector<StudyRow>& rows) {
@@ -62,9 +61,11 @@ std::string study_json(const std::vector<StudyRow>& rows) {
     if (!row.error.empty()) one["error"] = row.error;
     list.push_back(std::move(one));
   }
-  return plot::json_text(nlohmann::ordered_json{{"machine", tess::machine().describe()},
-                                                {"fitted_order", fitted_order(rows)},
-                                                {"rows", std::move(list)}});
+  nlohmann::ordered_json out{{"machine", tess::machine().describe()},
+                             {"fitted_order", nullptr},
+                             {"rows", std::move(list)}};
+  if (const std::optional<double> order = fitted_order(rows)) out["fitted_order"] = *order;
+  return plot::json_text(out);
 }
 
 void draw_study(const std::string& svg, const std::vector<StudyRow>& rows) {

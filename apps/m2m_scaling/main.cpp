@@ -22,11 +22,17 @@ namespace {
 
 using m2m_transfer::Request;
 
+bool has_values_of(const TransferReport& a, const TransferReport& b) {
+  return a.result_hash == b.result_hash && a.tally.counts == b.tally.counts;
+}
+
 /// Runs on a machine of its own. Returns the exit code.
 int run_case(const Request& request, const tess::SimulatedOptions& machine,
              TransferReport& report) {
   apps::Progress progress(stderr);
   tess::Setup setup{tess::make_simulated_machine(machine), {}};
+  setup.options.seed = machine.seed.value_or(1);
+  setup.options.migration_chance = migration_chance(machine);
   return tess::run(setup, [&]() -> tess::Task {
     m2m_transfer::Problem problem;
     co_await m2m_transfer::load(request, &problem);
@@ -34,6 +40,16 @@ int run_case(const Request& request, const tess::SimulatedOptions& machine,
     co_await m2m_transfer::measure(problem, tess::create_group<m2m_transfer::Gauge>(), progress);
     report = problem.reports.front();
   });
+}
+
+/// The machines of --sim with so many PEs each. That of one PE has one process.
+std::vector<tess::SimulatedOptions> machines_of(const std::string& sim,
+                                                const std::vector<std::int32_t>& pes) {
+  std::vector<tess::SimulatedOptions> machines;
+  for (const std::int32_t n : pes)
+    machines.push_back(tess::parse_simulated(fmt::format("pes={}{}{}{}", n, sim.empty() ? "" : ",",
+                                                         sim, n == 1 ? ",per-process=1" : "")));
+  return machines;
 }
 
 int study(int argc, char** argv) {
@@ -63,16 +79,19 @@ int study(int argc, char** argv) {
                " names a number of PEs; give them with --pes 1,4,16");
   if (!out.empty())
     for (const char* end : {".svg", ".csv"}) plot::require_writable("--out", out + end);
-  tess::SimulatedOptions machine = tess::parse_simulated(sim);
   std::ranges::sort(pes);
   std::vector<TransferReport> rows;
-  for (const std::int32_t n : pes) {
-    machine.n_pes = n;
+  for (const tess::SimulatedOptions& machine : machines_of(sim, pes)) {
     TransferReport best;
     if (const int code = run_case(request, machine, best); code != 0) return code;
     for (std::int32_t i = 1; i < repeat; ++i) {
       TransferReport next;
       if (const int code = run_case(request, machine, next); code != 0) return code;
+      if (!has_values_of(next, best)) {  // it is not repeated away
+        fmt::print(stderr, "m2m_scaling: two runs on {} PEs give different values\n",
+                   machine.n_pes);
+        return 1;
+      }
       const double gather = std::min(best.seconds.gather, next.seconds.gather);
       if (distributed_seconds(next) < distributed_seconds(best)) best = std::move(next);
       best.seconds.gather = gather;
@@ -84,8 +103,7 @@ int study(int argc, char** argv) {
   }
   if (!out.empty()) draw(out, rows);
   for (const TransferReport& row : rows)
-    if (row.result_hash != rows.front().result_hash ||
-        row.tally.counts != rows.front().tally.counts) {
+    if (!has_values_of(row, rows.front())) {
       fmt::print(stderr, "m2m_scaling: {} PEs give other values than {}\n", row.pes,
                  rows.front().pes);
       return 1;

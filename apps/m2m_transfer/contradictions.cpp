@@ -1,10 +1,12 @@
 #include "apps/m2m_transfer/contradictions.hpp"
 
 #include "apps/command_line.hpp"
+#include "apps/m2m_transfer/input/lists.hpp"
 #include "apps/m2m_transfer/study/study.hpp"
 #include "runtime/core/check.hpp"
 #include "runtime/core/error.hpp"
 
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -42,6 +44,14 @@ std::vector<Given> result_files(const DriverOptions& o) {
   return {given("--out", o.out), given("--picture", o.picture)};
 }
 
+/// Results are listed and written by name.
+void refuse_twice(const std::vector<std::string>& fields) {
+  std::set<std::string> names;
+  for (const std::string& name : split_names(fields))
+    if (!names.insert(name).second)
+      fail(ErrorCode::bad_argument, "--fields: ", name, " is given twice; give it once");
+}
+
 std::vector<Given> joined(std::vector<Given> a, const std::vector<Given>& b) {
   a.insert(a.end(), b.begin(), b.end());
   return a;
@@ -51,6 +61,7 @@ std::vector<Given> joined(std::vector<Given> a, const std::vector<Given>& b) {
 
 void refuse_contradictions(const DriverOptions& o, Mode mode) {
   const Request& r = o.request;
+  refuse_twice(r.fields);
   const Given repeat = o.repeat ? text("--repeat ", *o.repeat) : Given();
   const Given explain = o.explain ? "--explain" : "";
   const std::vector<Given> of_files{given("--step", o.step), given("--weights", o.weights),

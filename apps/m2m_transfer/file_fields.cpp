@@ -21,7 +21,6 @@
 
 #include <algorithm>
 #include <fmt/core.h>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -30,13 +29,6 @@ namespace {
 
 /// Values per vertex in one batch; a batch has at least one step.
 constexpr std::size_t batch_components = 64;
-
-std::vector<std::string> split_names(const std::vector<std::string>& lists) {
-  std::vector<std::string> names;
-  for (const std::string& list : lists)
-    std::ranges::move(split_at_commas(list), std::back_inserter(names));
-  return names;
-}
 
 /// Where the file has the field; at vertices if it has two of the name.
 std::optional<FieldPlace> place_of(const FieldFile& file, const std::string& name) {
@@ -268,8 +260,7 @@ void name_fields(const Batch& batch, FileFieldsReport& report) {
 
 void read_matrix(Run& run, FileFieldsReport& report) {
   const std::string& path = run.request.from_weights;
-  run.matrix = read_weights(path);
-  check_fits(run.matrix, path, run.source, run.target);
+  run.matrix = read_weights(path, run.source, run.target);
   const Rows<double>& rows = run.matrix.rows;
   report.n_weights = rows.weights.size();
   for (std::size_t row = 0; row < rows.n_rows(); ++row)

@@ -106,10 +106,13 @@ int run(tess::Setup& setup, int argc, char** argv) {
   problem.form = options.form == "group" ? Form::group : Form::chares;
   problem.grain = options.grain.value_or(default_grain(problem.n));
   if (!options.checkpoints.restarts()) check_grain(problem);  // else N is in the checkpoint
-  if (options.study && (options.grain || problem.first))
-    tess::fail(tess::ErrorCode::bad_argument,
-               "--study tries all grains and counts: leave out --grain and --first");
-  options.files.check(options.study);
+  if (options.study)  // it tries all grains and both forms, and counts
+    for (const char* name : {"--grain", "--form", "--first"})
+      if (line.is_given(name)) apps::refuse_together(name, "--study");
+  if (problem.first && options.expected.value_or(0) > 0)
+    tess::fail(tess::ErrorCode::bad_argument, "--expect ", *options.expected,
+               ": --first does not count; give --expect 0 if there is none, or leave one out");
+  options.files.check(options.study, setup.options.trace);
   return tess::run(setup, [&] { return measure(options); });
 }
 

@@ -6,10 +6,10 @@
 #include "apps/overset/wall_study.hpp"
 #include "apps/plot/file_names.hpp"
 #include "apps/plot/write_file.hpp"
+#include "apps/worst.hpp"
 #include "runtime/core/number.hpp"
 #include "runtime/runtime.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
@@ -61,7 +61,7 @@ tess::Task run_refined(Options options) {
         .n = n, .h = 1.0 / n, .seconds = assembly.cut + assembly.search + assembly.exchange};
     double squares = 0;
     for (const Assembled& mesh : assembly.meshes) {
-      row.linf = std::max(row.linf, mesh.linf);
+      apps::worsen(row.linf, mesh.linf);
       squares += mesh.rms * mesh.rms * static_cast<double>(mesh.report.n_fringe);
       row.n_fringe += mesh.report.n_fringe;
       row.n_orphans += mesh.report.n_orphans;

@@ -5,7 +5,6 @@
 #include "apps/particles/output/files.hpp"
 #include "apps/particles/output/report.hpp"
 #include "apps/particles/stability/cases.hpp"
-#include "apps/plot/file_names.hpp"
 #include "apps/plot/write_file.hpp"
 #include "runtime/balance/strategy.hpp"
 #include "runtime/runtime.hpp"
@@ -75,7 +74,7 @@ int drive(tess::Setup& setup, const Options& options) {
     tess::fail(tess::ErrorCode::bad_value, options.scene,
                ": objects: is empty; --study needs an object to bounce off");
   check_memory(problem.scene, machine.n_processes());
-  prepare_files(problem.scene, options);
+  prepare_files(problem.scene, options, setup.options.trace);
   if (options.explain && machine.process().value == 0)
     tess::print(explanation(problem.scene, options));
   apps::Progress progress(machine.process().value == 0 ? stderr : nullptr);
@@ -115,10 +114,6 @@ int run(tess::Setup& setup, int argc, char** argv) {
     tess::print(scene_help());
     return 0;
   }
-  plot::FileNames names;
-  names.reads("SCENE", options.scene);
-  names.writes("--json", options.json);
-  names.writes("--trace", setup.options.trace);
   if (line.is_given("--balance")) options.run.balance = tess::parse_balance(balance);
   if (stability && options.scene.empty())
     line.refuse_without("a SCENE", {"--steps", "--json", "--out", "--explain", "--study",

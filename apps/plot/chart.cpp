@@ -52,6 +52,17 @@ std::string_view with(Style style) {
 constexpr std::array colours{"#0072b2", "#d55e00", "#009e73", "#cc79a7",
                              "#e69f00", "#56b4e9", "#000000", "#999999"};
 
+/// Places of labels, each with its text: whole numbers have all their digits.
+std::string ticks(const Chart& chart) {
+  std::string out;
+  for (const double at : chart.x_ticks) {
+    const bool is_whole = at == std::round(at);
+    fmt::format_to(Text(out), "{}'{}' {}", out.empty() ? "" : ",",
+                   is_whole ? fmt::format("{}", at) : fmt::format("{:.3g}", at), at);
+  }
+  return out;
+}
+
 /// The axis ends with the data, not at a round number without a label. On a logarithmic axis
 /// gnuplot's ends are rounded, and may be inside the outermost labels, which it then omits.
 std::string x_range(const Chart& chart) {
@@ -74,7 +85,7 @@ std::string script(const Chart& chart) {
       "set encoding utf8\n"
       "set terminal svg noenhanced size 720,480 background rgb 'white' font 'sans-serif,13'\n"
       "set grid linetype 1 linecolor rgb '#dddddd'\nset border 3\nset tics nomirror\n"
-      "set key outside right top Left reverse samplen 2\nset format '%.3g'\n";
+      "set key outside right top Left reverse samplen 2\nset format '%.6g'\n";
   Text to(out);
   fmt::format_to(to, "set title {}\n", gnuplot_string(chart.title));
   fmt::format_to(to, "set xlabel {}\n", gnuplot_string(chart.x_label));
@@ -83,7 +94,7 @@ std::string script(const Chart& chart) {
   if (chart.y_log) out += "set logscale y\n";
   if (chart.equal_axes) out += "set size ratio -1\n";
   if (!chart.x_ticks.empty()) {
-    fmt::format_to(to, "set xtics ({})\n", fmt::join(chart.x_ticks, ","));
+    fmt::format_to(to, "set xtics ({})\n", ticks(chart));
     out += x_range(chart);
   }
   for (std::size_t i = 0; i < chart.series.size(); ++i) {

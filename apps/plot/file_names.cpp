@@ -17,4 +17,10 @@ void FileNames::writes(std::string what, std::string path) {
   taken_.emplace_back(std::move(what), std::move(path));
 }
 
+void FileNames::writes_picture(const std::string& what, const std::string& svg) {
+  if (svg.empty()) return;
+  writes(what, svg);
+  writes(what + " " + svg + ":", data_path(svg));
+}
+
 }  // namespace plot

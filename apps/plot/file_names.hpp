@@ -15,6 +15,8 @@ class FileNames {
   /// Throws tess::Error (bad_argument) that names both options and paths if the path is one of the
   /// others. `what`: "--json", or "--out r.pvtu:" for a file that follows from it.
   void writes(std::string what, std::string path);
+  /// The same for a picture and its data beside it.
+  void writes_picture(const std::string& what, const std::string& svg);
 
  private:
   std::vector<std::pair<std::string, std::string>> taken_;  // option, path

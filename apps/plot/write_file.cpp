@@ -42,7 +42,7 @@ void require_writable(const std::string& option, const std::string& path) {
 
 void require_picture(const std::string& option, const std::string& path) {
   require_writable(option, path);
-  if (!path.empty()) (void)data_path(path);
+  if (!path.empty()) require_writable(option + " " + path + ":", data_path(path));
 }
 
 bool is_same_file(const std::filesystem::path& a, const std::filesystem::path& b) {

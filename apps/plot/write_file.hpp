@@ -14,7 +14,7 @@ namespace plot {
 /// cannot be written: called before long work. An empty path is not checked.
 void require_writable(const std::string& option, const std::string& path);
 
-/// The same for a picture, NAME.svg.
+/// The same for a picture, NAME.svg, and its data.
 void require_picture(const std::string& option, const std::string& path);
 
 /// True if two paths lead to one file, or will once it is written. No path is the same as an empty

@@ -4,6 +4,7 @@
 // k-th Jacobi iterate from zero is a_k u exactly, so every run can be checked to rounding.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
@@ -30,6 +31,12 @@ struct Problem {
     const double half = std::sin(pi * h / 2);  // 1 − cos(πh) = 2 half², without cancellation
     const double grown = -std::expm1(steps * std::log1p(-2 * half * half));
     return h * h * pi * pi / 2 * grown / (2 * half * half);
+  }
+  /// How far rounding may take a value of about 1 from the iterate: four spacings in each of the
+  /// last steps, of which 1 / (1 − cos(πh)) count.
+  [[nodiscard]] double rounding(std::int32_t steps) const {
+    const double half = std::sin(std::numbers::pi * spacing() / 2);
+    return 1e-12 + 1e-15 * std::min<double>(steps, 1 / (2 * half * half));
   }
 };
 

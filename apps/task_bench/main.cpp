@@ -1,5 +1,6 @@
 // task_bench: the task graphs of Task Bench (Slaughter et al., SC20) on chare arrays. It measures
 // how small tasks may be before the runtime costs as much as they do.
+#include "apps/plot/file_names.hpp"
 #include "apps/plot/write_file.hpp"
 #include "apps/task_bench/report.hpp"
 
@@ -22,10 +23,12 @@ int start(tess::Setup& setup, int argc, char** argv) {
   // On all processes, so that all of them detect an error.
   plot::require_writable("--json", settings->json);
   plot::require_writable("--csv", settings->csv);
-  if (!settings->plot.empty() && plot::data_path(settings->plot) == settings->csv)
-    tess::fail(tess::ErrorCode::bad_argument, "--csv ", settings->csv,
-               ": the data of --plot goes there; choose another name");
-  plot::require_writable("--plot", settings->plot);
+  plot::require_picture("--plot", settings->plot);
+  plot::FileNames names;
+  names.writes("--trace", setup.options.trace);
+  names.writes("--json", settings->json);
+  names.writes("--csv", settings->csv);
+  names.writes_picture("--plot", settings->plot);
   if (settings->explain && setup.machine->process() == tess::ProcessId{0})
     tess::print_text(explain(*settings));
   return tess::run(setup, [&] { return measure(*settings); });

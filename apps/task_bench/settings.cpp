@@ -28,7 +28,7 @@ Options of a graph (-and begins the next; all graphs run at once):
   -period N        steps after which they repeat: spread, random_nearest (default 3)
   -fraction X      share of the nearest that are dependences: random_nearest (default 0.25)
   -kernel NAME     work of a task (default empty; with -metg compute_bound): {}
-  -iter N          iterations of the kernel (default 0)
+  -iter N          iterations of the kernel (default 0); without -metg
   -output N        bytes that a task hands on, at least 16 (default 16)
   -scratch N       bytes that memory_bound works on, per point
   -sample N        parts of the scratch, one per iteration (default 16)
@@ -78,7 +78,8 @@ T number(std::string_view option, std::string_view value, T least, T most) {
 /// A graph as it is given, before defaults that depend on others.
 struct Given {
   Graph graph;
-  bool steps = false, width = false, type = false, kernel = false, period = false;
+  bool steps = false, width = false, type = false, kernel = false, period = false,
+       iterations = false;
 };
 
 class Parser {
@@ -137,6 +138,7 @@ class Parser {
       next_.kernel = true;
     } else if (option_ == "-iter") {
       g.kernel.iterations = value<std::int64_t>(0, std::int64_t{1} << 40);
+      next_.iterations = true;
     } else if (option_ == "-output") {
       g.output_bytes = value<std::int64_t>(16, gigabyte);
     } else if (option_ == "-scratch") {
@@ -173,6 +175,7 @@ class Parser {
       settings_.balance = tess::parse_balance(value());
     } else if (option_ == "--balance-every") {
       settings_.sync_every = value<std::int64_t>(1, 1'000'000'000);
+      has_barriers_ = true;
     } else if (option_ == "--explain") {
       settings_.explain = true;
     } else if (option_ == "--spoil") {
@@ -202,6 +205,7 @@ class Parser {
         if (!given.type) g.type = Type::stencil_1d;
         if (!given.kernel) g.kernel.type = KernelType::compute_bound;
         if (g.kernel.type == KernelType::empty) refuse("-metg: -kernel empty has no grain");
+        if (given.iterations) refuse("-metg tries numbers of iterations: leave -iter out");
       }
       if (!given.period && has_period(g.type)) g.period = 3;
       if (!s.all_types) validate(g);
@@ -214,14 +218,17 @@ class Parser {
           fmt::format("--spoil {},{}: no graph has a task with this step and point whose output "
                       "another task reads; give those of one",
                       s.spoiled->first, s.spoiled->second));
-    if (s.balance && s.balance->when == tess::BalanceWhen::periodic) s.sync_every = 0;
-    if (!s.balance) s.sync_every = 0;
+    if (!s.balance || s.balance->when == tess::BalanceWhen::periodic) {
+      if (has_barriers_) refuse("--balance-every: only with --balance STRATEGY, and not periodic");
+      s.sync_every = 0;
+    }
   }
 
   const std::vector<std::string_view> argv_;
   std::size_t at_ = 0;
   std::string_view option_;
   Settings settings_;
+  bool has_barriers_ = false;  // --balance-every is given
   std::vector<Given> given_;
   Given next_;
 };

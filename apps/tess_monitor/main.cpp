@@ -2,6 +2,7 @@
 // prints a frame whenever one comes.
 //
 //     tess_monitor --connect localhost:8080 [--token T] [--frames N] [--heat Block [--by pe]]
+//     tess_monitor --connect [::1]:8080
 #include "apps/command_line.hpp"
 #include "runtime/core/error.hpp"
 
@@ -36,12 +37,16 @@ struct Options {
 class Events {
  public:
   Events(const Options& options, const std::string& path) : options_(options), socket_(io_) {
-    const std::size_t colon = options.connect.rfind(':');
-    const std::string host = options.connect.substr(0, colon);
-    const std::string port =
-        colon == std::string::npos ? "8080" : options.connect.substr(colon + 1);
+    std::string host = options.connect, port = "8080";
+    if (const std::size_t colon = host.rfind(':');
+        colon != std::string::npos && !host.ends_with(']')) {
+      port = host.substr(colon + 1);
+      host.resize(colon);
+    }
+    const bool six = host.starts_with('[') && host.ends_with(']');  // IPv6: [::1]
     boost::system::error_code error;
-    const auto found = Tcp::resolver(io_).resolve(host, port, error);
+    const auto found =
+        Tcp::resolver(io_).resolve(six ? host.substr(1, host.size() - 2) : host, port, error);
     if (!error) boost::asio::connect(socket_, found, error);
     if (error) refuse(error.message() + "; is the run started with --monitor?");
     const std::string token = options.token.empty() ? "" : "&token=" + options.token;
@@ -195,6 +200,7 @@ int main(int argc, char** argv) {
         .between(0, 1'000'000'000);
     line.option("--rows", options.n_rows, "lines for PEs; more PEs share them").between(1, 10'000);
     if (!line.parse(argc, argv, "")) return 0;
+    if (options.heat.empty()) line.refuse_without("a --heat map", {"--by"});
     return watch(options);
   });
 }

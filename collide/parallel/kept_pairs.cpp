@@ -17,13 +17,15 @@ std::size_t most_kept(std::size_t n_objects) {
 
 }  // namespace
 
-bool are_far_too_many(const Summary& larger, Touching touching, std::int32_t n_pes) {
+bool are_far_too_many(const Summary& larger, const PairRules& rules, std::int32_t n_pes) {
   constexpr double factor = 8;  // what a sample is certain of, and what is not too long
   if (larger.sample.empty()) return false;
   const double n = static_cast<double>(larger.n);
   const double scale = n / static_cast<double>(larger.sample.size());
   double n_pairs = 0;
-  for_each_pair(std::span<const Aabb>(larger.sample), {.touching = touching},
+  PairOptions options{.touching = rules.touching};
+  if (rules.within_model == WithinModel::skip) options.models = larger.sample_models;
+  for_each_pair(std::span<const Aabb>(larger.sample), options,
                 [&n_pairs](std::uint32_t /*a*/, std::uint32_t /*b*/) { ++n_pairs; });
   const double most = static_cast<double>(most_kept(0)) * n_pes +
                       static_cast<double>(most_kept(larger.n) - most_kept(0));

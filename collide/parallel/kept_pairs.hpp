@@ -34,7 +34,8 @@ namespace tess::collide {
 
 /// True if the sample of larger objects says that they have many times the pairs that are kept:
 /// these are not searched, which would take long.
-[[nodiscard]] bool are_far_too_many(const Summary& larger, Touching touching, std::int32_t n_pes);
+[[nodiscard]] bool are_far_too_many(const Summary& larger, const PairRules& rules,
+                                    std::int32_t n_pes);
 
 class KeptPairs {
  public:

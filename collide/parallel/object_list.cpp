@@ -69,21 +69,27 @@ void ObjectList::number_objects() {
 /// For a list whose objects have numbers.
 std::uint32_t ObjectList::find_source(Source wanted) {
   wanted.shift = 0;
-  const auto is_wanted = [&](Source known) {
-    known.shift = 0;
-    return known == wanted;
-  };
+  const auto is_wanted = [&](const Source& known) { return SameOrigin{}(known, wanted); };
   // Most objects have the source of the one before.
   if (!sources_.empty() && is_wanted(sources_.back()))
     return static_cast<std::uint32_t>(sources_.size() - 1);
-  const auto known = std::find_if(sources_.begin(), sources_.end(), is_wanted);
-  const auto at = static_cast<std::uint32_t>(known - sources_.begin());
-  if (known == sources_.end()) add_source(wanted);
+  auto at = static_cast<std::uint32_t>(sources_.size());
+  constexpr std::size_t few = 8;
+  if (sources_.size() < few) {
+    const auto known = std::find_if(sources_.begin(), sources_.end(), is_wanted);
+    at = static_cast<std::uint32_t>(known - sources_.begin());
+  } else {
+    if (places_.empty())
+      for (std::uint32_t i = 0; i < sources_.size(); ++i) places_.try_emplace(sources_[i], i);
+    if (const auto known = places_.find(wanted); known != places_.end()) at = known->second;
+  }
+  if (at == sources_.size()) add_source(wanted);
   return at;
 }
 
 void ObjectList::add_source(const Source& source) {
   several_models_ = several_models_ || (!sources_.empty() && sources_.back().model != source.model);
+  if (!places_.empty()) places_.try_emplace(source, static_cast<std::uint32_t>(sources_.size()));
   sources_.push_back(source);
 }
 
@@ -91,8 +97,8 @@ void ObjectList::add_source(const Source& source) {
 /// copied. Only then does the list have them.
 void ObjectList::append(const Objects& objects, PeId pe) {
   const std::size_t n = objects.boxes.size(), begin = boxes_.size();
-  if (n == 0) return;
   check_room(n, objects.capsules.size());
+  if (n == 0) return;
   check_numbers(objects.first, n);
   boxes_.reserve(begin + n);
   Aabb bounds = bounds_;
@@ -125,9 +131,9 @@ void ObjectList::append(const Objects& objects, PeId pe) {
 }
 
 void ObjectList::append(std::span<const Item> items, std::span<const Capsule> capsules, PeId pe) {
+  check_room(items.size(), capsules.size());
   if (items.empty()) return;
   check_boxes(items);
-  check_room(items.size(), capsules.size());
   number_objects();
   for (const Item& item : items) {
     boxes_.push_back(item.box);
@@ -193,6 +199,7 @@ void ObjectList::append(const ObjectList& from, std::span<const search::Entry> e
 void ObjectList::clear() {
   boxes_.resize(0);
   sources_.clear();
+  if (!places_.empty()) places_.clear();  // which passes over all its memory
   source_of_.clear();
   local_.clear();
   capsules_.clear();

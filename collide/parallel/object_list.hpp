@@ -10,8 +10,11 @@
 #include "collide/search/entry.hpp"
 #include "collide/search/scratch.hpp"
 #include "runtime/core/algorithm.hpp"
+#include "runtime/core/hash.hpp"
 #include "runtime/core/ids.hpp"
 #include "runtime/core/serialize.hpp"
+
+#include <boost/unordered/unordered_flat_map.hpp>
 
 #include <array>
 #include <cstdint>
@@ -108,6 +111,19 @@ class ObjectList {
   }
 
  private:
+  /// Sources that differ in nothing but their shifts are the same to these.
+  struct HashOrigin {
+    std::size_t operator()(const Source& s) const noexcept {
+      const std::uint64_t place = std::uint64_t{static_cast<std::uint32_t>(s.pe.value)} << 32;
+      return mix(static_cast<std::uint64_t>(s.owner) ^
+                 mix(place | static_cast<std::uint32_t>(s.model)));
+    }
+  };
+  struct SameOrigin {
+    bool operator()(const Source& a, const Source& b) const noexcept {
+      return a.owner == b.owner && a.model == b.model && a.pe == b.pe;
+    }
+  };
   void check_room(std::size_t n_more, std::size_t n_capsules) const;
   /// Of the objects that have none yet.
   void add_capsules(std::span<const Capsule> capsules);
@@ -119,6 +135,8 @@ class ObjectList {
 
   search::Scratch<Aabb> boxes_;
   std::vector<Source> sources_;
+  /// The first position of each of many sources, whatever its shift; empty until it is needed.
+  boost::unordered_flat_map<Source, std::uint32_t, HashOrigin, SameOrigin> places_;
   std::vector<std::uint32_t> source_of_;  // per object; empty: all 0
   std::vector<std::uint32_t> local_;      // per object; empty: by the shift of the source
   std::vector<Capsule> capsules_;         // per object that was submitted; empty: none is known

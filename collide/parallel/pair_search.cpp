@@ -68,12 +68,13 @@ void solve(const PairSets& sets, Receiver& receiver, Search& search) {
 
 /// Calls run(search) for a search that has the receiver; false if there were too many pairs.
 template <class Run>
-bool run_search(const Plan& plan, Receiver& receiver, const Run& run) {
+bool run_search(const Plan& plan, const VoxelProblem& voxel, Receiver& receiver, const Run& run) {
   Search& search = scratch().search;
   PairOptions options;
   // Boxes of pieces touch where their objects may overlap.
   options.touching = plan.pieces.used ? Touching::counts : plan.rules.touching;
-  search.restart(options, false, {&receiver, &Receiver::call});
+  options.models = voxel.models();
+  search.restart(options, !options.models.empty(), {&receiver, &Receiver::call});
   try {
     run(search);
     return true;
@@ -90,7 +91,7 @@ bool search_at_once(std::span<const Part> parts) {
   const PairRules& rules = delivery.plan.rules;
   voxel.gather(parts, rules.within_model);
   Receiver receiver{delivery.report, rules.touching};
-  const bool found = run_search(delivery.plan, receiver, [&](Search& search) {
+  const bool found = run_search(delivery.plan, voxel, receiver, [&](Search& search) {
     voxel.for_each_search([&](const PairSets& sets) { solve(sets, receiver, search); });
   });
   if (found) receiver.hits.send(delivery.report.call);
@@ -108,7 +109,7 @@ HitSorter PortionSearch::next() {
     const PairSets sets = remaining_.back();
     remaining_.pop_back();
     Receiver receiver{delivery.report, delivery.plan.rules.touching};
-    if (!run_search(delivery.plan, receiver,
+    if (!run_search(delivery.plan, objects_, receiver,
                     [&](Search& search) { solve(sets, receiver, search); }))
       divide(sets);
     else if (!receiver.hits.empty())

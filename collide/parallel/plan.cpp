@@ -62,8 +62,10 @@ Summary::Summary(const ObjectList& objects, std::int32_t pe, std::size_t n_sampl
   const std::size_t seed = n_taken <= few_sampled ? static_cast<std::size_t>(pe) : 0;
   for (std::size_t i = 0; i < n_taken; ++i) {
     const std::size_t at = search::scattered(i, n_taken, n, seed);
+    const auto object = static_cast<std::uint32_t>(at);
     sample.push_back(objects.boxes()[at]);
-    if (has_capsules) capsules.push_back(objects.capsule(static_cast<std::uint32_t>(at)));
+    sample_models.push_back(static_cast<std::uint32_t>(objects.model(object)));
+    if (has_capsules) capsules.push_back(objects.capsule(object));
   }
   if (n_taken != 0) sampled.push_back({pe, static_cast<std::uint32_t>(n_taken)});
 }
@@ -93,6 +95,7 @@ Summary JoinSummaries::combine(Summary a, const Summary& b) const {
     a.capsules.resize(a.sample.size() + b.sample.size(), unknown_capsule);
   }
   a.sample.insert(a.sample.end(), b.sample.begin(), b.sample.end());
+  a.sample_models.insert(a.sample_models.end(), b.sample_models.begin(), b.sample_models.end());
   a.sampled.insert(a.sampled.end(), b.sampled.begin(), b.sampled.end());
   a.octaves.add(b.octaves);
   for (const ModelId model : b.models) a.add(model);
@@ -101,13 +104,16 @@ Summary JoinSummaries::combine(Summary a, const Summary& b) const {
 
 Summary JoinSummaries::finish(Summary all) const {
   all.sample = by_pe(all.sampled, all.sample);
+  all.sample_models = by_pe(all.sampled, all.sample_models);
   if (all.has_capsules) all.capsules = by_pe(all.sampled, all.capsules);
   return all;
 }
 
 VoxelGrid Plan::grid(Level level) const {
   Point scaled = size;
-  for (double& edge : scaled) edge = std::ldexp(edge, 3 * level);
+  // The largest extents have voxels of the largest size.
+  for (double& edge : scaled)
+    edge = std::min(std::ldexp(edge, 3 * level), std::numeric_limits<double>::max());
   return {origin, scaled};
 }
 

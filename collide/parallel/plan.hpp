@@ -26,7 +26,8 @@ struct Summary {
   /// Of all capsules; the radius is infinite if one is not known, or much smaller than its box.
   double longest_capsule = 0, largest_radius = 0;
   std::vector<Aabb> sample;
-  std::vector<Capsule> capsules;  ///< of the sample, or none
+  std::vector<std::uint32_t> sample_models;  ///< per box of the sample
+  std::vector<Capsule> capsules;             ///< of the sample, or none
   /// Whose boxes the sample has, one PE after the other.
   struct Sampled {
     std::int32_t pe = 0;
@@ -44,8 +45,8 @@ struct Summary {
 
   template <class Ar>
   void serialize(Ar& ar) {
-    ar(n, bounds, has_capsules, longest_capsule, largest_radius, sample, capsules, sampled, octaves,
-       models);
+    ar(n, bounds, has_capsules, longest_capsule, largest_radius, sample, sample_models, capsules,
+       sampled, octaves, models);
   }
 };
 /// Joins in any order; in the end the sample is in the order of the PEs.

@@ -1,9 +1,26 @@
 #include "collide/parallel/voxel_problem.hpp"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 namespace tess::collide {
+namespace {
+
+bool are_separate(std::span<const ModelSet> natives, std::span<const ModelSet> visitors) {
+  std::array<ModelId, most_separate_models> known;
+  std::size_t n = 0;
+  for (const auto sets : {natives, visitors})
+    for (const ModelSet& set : sets) {
+      const auto end = known.begin() + static_cast<std::ptrdiff_t>(n);
+      if (std::find(known.begin(), end, set.model) != end) continue;
+      if (n == known.size()) return false;
+      known[n++] = set.model;
+    }
+  return true;
+}
+
+}  // namespace
 
 void ByModel::add(std::span<const search::Entry> entries, const ObjectList& objects) {
   if (entries.empty()) return;
@@ -19,8 +36,10 @@ void ByModel::add(std::span<const search::Entry> entries, const ObjectList& obje
 void ByModel::add_run(ModelId model, std::span<const search::Entry> entries,
                       const ObjectList& objects) {
   if (sets_.empty()) together_ = true;
-  together_ = together_ && std::none_of(sets_.begin(), sets_.end(),
-                                        [&](const ModelSet& set) { return set.model == model; });
+  // Of more sets than that, two have one model, or the models are too many for join().
+  together_ = together_ && sets_.size() < most_separate_models &&
+              std::none_of(sets_.begin(), sets_.end(),
+                           [&](const ModelSet& set) { return set.model == model; });
   sets_.push_back({model, &objects, entries});
 }
 
@@ -59,12 +78,21 @@ void ByModel::join(ObjectList& merged) {
 void VoxelProblem::gather(std::span<const Part> parts, WithinModel within_model) {
   merged_.clear();
   objects_ = nullptr;
+  within_ = true;
+  models_ = {};
   if (within_model == WithinModel::test) return gather_all(parts);
   natives_by_model_.clear();
   visitors_by_model_.clear();
   for (const Part& part : parts) {
     natives_by_model_.add(part.natives(), part.delivery().objects);
     visitors_by_model_.add(part.visitors(), part.delivery().objects);
+  }
+  const std::span<const ModelSet> natives = natives_by_model_.sets();
+  if (!are_separate(natives, visitors_by_model_.sets())) {
+    within_ = std::any_of(natives.begin(), natives.end(),
+                          [&](const ModelSet& set) { return set.model != natives.front().model; });
+    gather_all(parts);
+    return set_models();
   }
   natives_by_model_.join(merged_);
   visitors_by_model_.join(merged_);
@@ -85,6 +113,16 @@ void VoxelProblem::gather_all(std::span<const Part> parts) {
   objects_ = &merged_;
   natives_ = std::span(entries_).first(n_natives);
   visitors_ = std::span(entries_).subspan(n_natives);
+}
+
+void VoxelProblem::set_models() {
+  model_of_.resize(objects_->size());
+  for (const auto entries : {natives_, visitors_})
+    for (const search::Entry entry : entries) {
+      const std::uint32_t object = search::object_of(entry);
+      model_of_.data()[object] = static_cast<std::uint32_t>(objects_->model(object));
+    }
+  models_ = {model_of_.data(), model_of_.size()};
 }
 
 }  // namespace tess::collide

@@ -3,7 +3,9 @@
 
 #include "collide/parallel/part.hpp"
 #include "collide/search/choose_grid.hpp"
+#include "collide/search/scratch.hpp"
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -24,6 +26,10 @@ struct ModelSet {
   const ObjectList* objects = nullptr;
   std::span<const search::Entry> entries;
 };
+
+/// So many models in a voxel are searched pair by pair, where their objects are. More are searched
+/// together, because their pairs would be too many searches.
+inline constexpr std::size_t most_separate_models = 8;
 
 /// Objects of several parts by model. Entries are copied only if the objects of a model do not
 /// stand together, and boxes only if they stand in several lists. So a voxel of two planes, each on
@@ -51,12 +57,13 @@ class VoxelProblem {
   /// The parts remain where they are until the search is done.
   void gather(std::span<const Part> parts, WithinModel within_model);
 
-  /// Calls run(sets) for the sets whose pairs count: those of different models, or all.
+  /// Calls run(sets) for the sets whose pairs count: those of different models, or all. With
+  /// models(), only their pairs of different models count.
   template <class Run>
   void for_each_search(const Run& run) const {
     if (objects_ != nullptr) {
       const Aabb* const boxes = objects_->boxes().data();
-      return run(PairSets{{boxes, boxes, natives_, visitors_, true}, objects_, objects_});
+      return run(PairSets{{boxes, boxes, natives_, visitors_, within_}, objects_, objects_});
     }
     const auto run_pair = [&](const ModelSet& a, const ModelSet& b) {
       const Aabb* const boxes_a = a.objects->boxes().data();
@@ -73,11 +80,18 @@ class VoxelProblem {
     }
   }
 
+  /// By the positions of the objects in their list, if many models are searched together; or none.
+  [[nodiscard]] std::span<const std::uint32_t> models() const { return models_; }
+
  private:
   void gather_all(std::span<const Part> parts);
+  void set_models();
 
-  const ObjectList* objects_ = nullptr;  // if pairs within a model count: of all parts
+  const ObjectList* objects_ = nullptr;  // of all parts, if they are searched together
   std::span<const search::Entry> natives_, visitors_;
+  bool within_ = true;                     // natives_ have pairs that count
+  std::span<const std::uint32_t> models_;  // in model_of_, where the voxel has an object
+  search::Scratch<std::uint32_t> model_of_;
   ObjectList merged_;
   std::vector<search::Entry> entries_;
   ByModel natives_by_model_, visitors_by_model_;

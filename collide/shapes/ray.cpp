@@ -4,6 +4,7 @@
 #include "collide/shapes/vector.hpp"
 
 #include <algorithm>
+#include <limits>
 
 namespace tess::collide {
 namespace {
@@ -33,7 +34,11 @@ std::optional<double> hit(const Aabb& object, const Ray& ray) noexcept {
     const Slab slab = d > 0 ? Slab{object.lo[k], object.hi[k], from, d}
                             : Slab{-object.hi[k], -object.lo[k], -from, -d};
     if (slab.far < slab.from) return std::nullopt;
-    at = std::max(at, (slab.near - slab.from) / slab.direction);
+    double enters = (slab.near - slab.from) / slab.direction;
+    if (enters > std::numeric_limits<double>::max())  // the difference may have overflowed
+      enters = ratio([&](auto number) { return number(slab.near) - number(slab.from); },
+                     [&](auto number) { return number(slab.direction); });
+    at = std::max(at, enters);
     slabs[n++] = slab;
   }
   for (std::size_t i = 0; i < n; ++i)

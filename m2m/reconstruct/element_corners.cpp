@@ -130,7 +130,7 @@ std::vector<double> element_corners(MeshView mesh, std::span<const GlobalId> ids
     for (const std::int32_t n : neighbours)
       offsets.push_back(
           difference(elements.centroids[static_cast<std::size_t>(n)], elements.centroids[e]));
-    fit.compute(offsets, FitDegree::linear, rounding_at(elements.centroids[e]));
+    fit.compute(offsets, FitDegree::linear, rounding_at(elements.centroids[e]), arms);
     for (std::size_t c = 0; c < n_components; ++c) {
       const double own = value(me, c);
       double low = own, high = own;

@@ -12,6 +12,9 @@ namespace {
 constexpr double least_extent = 1e-13;
 /// Times the rounding of the offsets: a smaller extent may be rounding.
 constexpr double clearly = 32;
+/// A direction in which the arms reach more than so many times as far as the neighbours is left
+/// out: in a single layer the neighbours' distances across it are rounding or curvature.
+constexpr double most_extrapolation = 4;
 /// In principal axes, where the root mean square of each coordinate is 1: neighbours at smaller
 /// distances, whose differences may be rounding, count as those at this one.
 constexpr double least_distance = 1e-3;
@@ -107,7 +110,8 @@ double rounding_at(const Point& p) noexcept {
 }
 
 /// Fills axes_ and basis_; returns the number of directions with an extent.
-std::size_t GradientFit::principal_axes(std::span<const Point> offsets, double rounding) {
+std::size_t GradientFit::principal_axes(std::span<const Point> offsets, double rounding,
+                                        std::span<const Point> arms) {
   const std::size_t n = offsets.size();
   double reach = 0;
   for (const Point& d : offsets)
@@ -128,6 +132,10 @@ std::size_t GradientFit::principal_axes(std::span<const Point> offsets, double r
   std::size_t n_axes = 0;
   for (std::size_t k = 0; k < 3; ++k) {
     if (!(extent[k] > std::max(least_extent * largest, clearly * rounding / reach))) continue;
+    double farthest = 0, own = 0;
+    for (const double x : columns[k]) farthest = std::max(farthest, std::abs(x));
+    for (const Point& arm : arms) own = std::max(own, std::abs(dot(arm, v[k])) / reach);
+    if (own > most_extrapolation * farthest) continue;
     for (std::size_t j = 0; j < n; ++j) columns[n_axes][j] = columns[k][j] / extent[k];
     for (std::size_t i = 0; i < 3; ++i) basis_[n_axes][i] = v[k][i] / extent[k] / reach;
     ++n_axes;
@@ -135,10 +143,11 @@ std::size_t GradientFit::principal_axes(std::span<const Point> offsets, double r
   return n_axes;
 }
 
-double GradientFit::compute(std::span<const Point> offsets, FitDegree degree, double rounding) {
+double GradientFit::compute(std::span<const Point> offsets, FitDegree degree, double rounding,
+                            std::span<const Point> arms) {
   const std::size_t n = offsets.size();
   weights_.assign(n, Point{});
-  const std::size_t n_axes = principal_axes(offsets, rounding);
+  const std::size_t n_axes = principal_axes(offsets, rounding, arms);
   const auto axis = [&](std::size_t k) { return std::span(axes_).subspan(k * n, n); };
   std::vector<double> importance(n, 0.0);
   for (std::size_t j = 0; j < n; ++j) {

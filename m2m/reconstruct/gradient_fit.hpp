@@ -10,7 +10,7 @@
 //
 // Patches that do not determine all terms fall back, term by term: a quadratic term that depends on
 // the terms before it is dropped; in a direction without extent (all neighbours in one plane or on
-// one line) the gradient is zero.
+// one line, or nearly so, seen from what extrapolates) the gradient is zero.
 #pragma once
 
 #include "m2m/mesh.hpp"
@@ -32,7 +32,10 @@ class GradientFit {
   /// polynomial: the least part of a term that is independent of the terms before it, 0 if a term
   /// was dropped. Below `well_determined` the weights amplify what the polynomial leaves out.
   /// `rounding`: of the offsets; extents that are not clearly above it are none.
-  double compute(std::span<const Point> offsets, FitDegree degree, double rounding);
+  /// `arms`: offsets of points to which the gradient extrapolates; a direction in which they reach
+  /// more than four times as far as the neighbours is left out.
+  double compute(std::span<const Point> offsets, FitDegree degree, double rounding,
+                 std::span<const Point> arms = {});
 
   static constexpr double well_determined = 0.4;
 
@@ -40,7 +43,8 @@ class GradientFit {
   [[nodiscard]] std::span<const Point> weights() const noexcept { return weights_; }
 
  private:
-  std::size_t principal_axes(std::span<const Point> offsets, double rounding);
+  std::size_t principal_axes(std::span<const Point> offsets, double rounding,
+                             std::span<const Point> arms);
 
   std::vector<Point> weights_;
   std::vector<double> axes_;    // coordinates in principal axes: 3 columns

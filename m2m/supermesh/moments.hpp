@@ -25,7 +25,8 @@ struct PairMoments {
 [[nodiscard]] double overlap_volume(const Corners& a, const Corners& b);
 
 /// All moments of the intersection. Rows and columns add up: the sum of mixed[a][b] is the volume.
-/// Takes about 0.1 µs for a pair that does not overlap, and less than 1 µs for one that does.
+/// None of them is negative. Takes about 0.1 µs for a pair that does not overlap, and less than 1 µs
+/// for one that does; with a larger tetrahedron that is nearly flat and lies askew, 5 µs more.
 [[nodiscard]] PairMoments pair_moments(const Corners& source, const Corners& target);
 
 }  // namespace tess::m2m

@@ -39,8 +39,8 @@ class Polyhedron {
   [[nodiscard]] bool cut();
 
   /// Calls visit(fraction, a, b, c, d) for tetrahedra that make up the polyhedron. `fraction`: the
-  /// volume of the piece as a fraction of the carried tetrahedron; rounding can make it slightly
-  /// negative. a to d: the barycentric coordinates of its corners.
+  /// volume of the piece as a fraction of the carried tetrahedron; pieces that have none, up to
+  /// rounding, are left out. a to d: its corners, of type Vertex.
   template <class Visit>
   void for_each_piece(Visit&& visit) const;
 
@@ -88,8 +88,9 @@ void Polyhedron::for_each_piece(Visit&& visit) const {
         const double fraction = a[0] * (b[1] * c[2] - b[2] * c[1]) +
                                 a[1] * (b[2] * c[0] - b[0] * c[2]) +
                                 a[2] * (b[0] * c[1] - b[1] * c[0]);
-        visit(fraction, apex, vertices_[first].weights, vertices_[ring[k]].weights,
-              vertices_[ring[k + 1]].weights);
+        if (fraction > 0)
+          visit(fraction, vertices_[0], vertices_[first], vertices_[ring[k]],
+                vertices_[ring[k + 1]]);
       }
     }
   }

@@ -281,6 +281,13 @@ std::string latest_checkpoint(const std::string& folder) {
   return {};
 }
 
+/// Elements are under way until all is quiet, and a timer would hide that.
+void refuse_timers(const std::vector<std::string>& set) {
+  if (!set.empty())
+    fail(ErrorCode::bad_argument, "restart() waits for all messages, but ", set.front(),
+         ": let no other coroutine sleep or set timers meanwhile");
+}
+
 Task read_checkpoint(std::string folder, std::string state_type, std::vector<std::byte>& state) {
   require_main("restart()");
   Pe& pe = current_pe();
@@ -288,6 +295,10 @@ Task read_checkpoint(std::string folder, std::string state_type, std::vector<std
     fail(ErrorCode::bad_argument,
          "restart() comes first, but this run has already made a future, which a callback of the "
          "saved run could find: make it after the restart");
+  if (pe.timers().n_waiting() + pe.timers().n_periodic() != 0)
+    fail(ErrorCode::bad_argument,
+         "restart() comes first, but this run has already set a timer, which a Timer of the saved "
+         "run could name: set it after the restart");
   AskAll<&existing> present(Nothing{});
   for (const std::vector<std::string>& names : co_await present)
     if (!names.empty())
@@ -332,13 +343,13 @@ Task read_checkpoint(std::string folder, std::string state_type, std::vector<std
   for (const std::string& error : co_await restored)
     if (!error.empty()) fail(ErrorCode::environment, "the restart failed: ", error);
   Quiet arrived;
-  (void)co_await arrived;
+  refuse_timers(co_await arrived);
   AskAll<&finish_here> finished(
       FinishQuestion{chosen->main.collections, chosen->main.numbers, chosen->main.sections,
                      chosen->main.places_of_futures, chosen->main.timers});
   (void)co_await finished;
   Quiet settled;
-  (void)co_await settled;
+  refuse_timers(co_await settled);
   AskAll<&thaw_here> thawed(Thaw{});
   (void)co_await thawed;
   pe.runtime().made_before_restart() = std::move(chosen->main.numbers);

@@ -202,10 +202,13 @@ void Collection::apply(const NumberedCall& call) {
   elements_.resize(kept);
 }
 
+void Collection::require_not_destroyed(const Element& element, std::string_view claim) {
+  TESS_CHECK(element.state_.created_after != destroyed_now, element_text(element), claim);
+}
+
 void Collection::contribute(Element& element, std::unique_ptr<Partial> value) {
   if (ended_) return;  // its coroutine outlives the array: nothing waits for a result
-  TESS_CHECK(element.state_.created_after != destroyed_now, element_text(element),
-             " contributes in its destructor: contribute before destroy()");
+  require_not_destroyed(element, " contributes in its destructor: contribute before destroy()");
   Newcomer newcomer;
   if (element.state_.created_after != 0)
     newcomer = {element.state_.created_after, element_text(element)};
@@ -314,8 +317,7 @@ void Collection::end_wait(Element& element) {
 
 void Collection::at_sync(Element& element) {
   if (ended_) return;  // no round resumes it: it ends once its coroutine is done
-  TESS_CHECK(element.state_.created_after != destroyed_now, element_text(element),
-             " calls at_sync() in its destructor, and nothing resumes it");
+  require_not_destroyed(element, " calls at_sync() in its destructor, and nothing resumes it");
   SyncState& sync = make_record(element).sync;
   TESS_CHECK(sync.phase == SyncPhase::runs, element_text(element),
              " calls at_sync() again before it was resumed");

@@ -101,6 +101,8 @@ class Collection : public HostedCollection {
 
   /// The element is destroyed now: its destructor does not contribute.
   static void counts_no_more(Element& element) { element.state_.created_after = destroyed_now; }
+  /// Ends the run with the element's name and the claim if its destructor runs.
+  static void require_not_destroyed(const Element& element, std::string_view claim);
   /// From now on the element keeps the number of its next reduction.
   void settle_join(Element& element) {
     if (element.state_.created_after == 0) return;

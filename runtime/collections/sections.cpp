@@ -263,8 +263,8 @@ std::vector<std::uint32_t> Sections::deliver_listed(SectionPart& part, const Sec
 Sections::Seat Sections::find_contributor(SectionPart& part, Element& element) {
   const Seat seat = find(element, part.id);
   if (seat.part != nullptr) return seat;
-  TESS_CHECK(element.state_.created_after != destroyed_now, element_text(element),
-             " contributes in its destructor: contribute before destroy()");
+  Collection::require_not_destroyed(element,
+                                    " contributes in its destructor: contribute before destroy()");
   ++element.n_suspended_;  // it stays here until Join has reached it
   const Seat added = add(part, element, SectionPart::Member{});
   part.reduction.advance();

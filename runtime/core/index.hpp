@@ -139,6 +139,8 @@ template <class Index>
 /// The dense box of indices 0 … extent − 1 on each axis. `n_axes` 0 is the empty range of a sparse
 /// array.
 struct Range {
+  constexpr Range() = default;  // no aggregate: create<C>({2, 2}) does not compile
+
   std::array<std::int32_t, 6> extent{1, 1, 1, 1, 1, 1};
   std::int32_t n_axes = 0;
 
@@ -147,6 +149,10 @@ struct Range {
     std::uint64_t n = 1;
     for (const std::int32_t e : extent) n *= static_cast<std::uint64_t>(e);
     return n;
+  }
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(extent, n_axes);
   }
 };
 

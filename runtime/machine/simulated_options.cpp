@@ -43,10 +43,11 @@ struct Value {
     std::string_view unit;
     const double value = number(&unit);
     const double factor = unit == "GB/s" ? 1e9 : unit == "MB/s" ? 1e6 : unit.empty() ? 1 : -1;
-    if (factor < 0 || value <= 0)
+    const double rate = value * factor;
+    if (!(rate >= 1 && rate <= 1e18))
       fail(ErrorCode::bad_argument, place, ": ", text,
-           " is not a rate (a number with MB/s or GB/s)");
-    return value * factor;
+           " is not a rate (a number with MB/s or GB/s; at least a byte a second)");
+    return rate;
   }
   [[nodiscard]] std::int64_t whole(std::int64_t least, std::int64_t most) const {
     std::string_view unit;

@@ -34,6 +34,7 @@ struct Envelope : Link {
   /// The number of its send on the source PE, if a trace is kept; with an audit the number of its
   /// hop (report/audit.hpp).
   std::uint32_t trace = 0;
+  static constexpr std::uint32_t most_trace = (1U << 29) - 1;  // so many travel between processes
   /// Credit that the PE that runs it owes to `sender`, which packed it for this hop (outbox.hpp); 0
   /// within a process.
   std::uint32_t charge = 0;

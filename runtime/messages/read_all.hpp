@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <exception>
+#include <new>
 #include <string>
 #include <string_view>
 
@@ -30,6 +31,11 @@ auto read_all(Reader& body, const What& what, const Read& read) {
     TESS_CHECK(body.remaining() == 0, what(), ": ", body.remaining(), " of ", n_bytes,
                " bytes are left when it is read back; does serialize() read what it writes?");
     return value;
+  } catch (const std::bad_alloc&) {  // the message is lost, so the run cannot go on
+    check_failed("memory", __FILE__, __LINE__,
+                 text("memory is exhausted where ", what(), ", ", n_bytes,
+                      " bytes and what is attached to them, is received; ask for less, or give "
+                      "this machine more"));
   } catch (const std::exception& error) {
     refuse_reading(what(), n_bytes, error.what());
   } catch (...) {

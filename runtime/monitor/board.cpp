@@ -22,9 +22,10 @@ constexpr std::size_t most_pixels = 1 << 20;
 std::string as_levels(const std::vector<float>& values, float least, float most) {
   std::string out;
   out.reserve(2 * values.size());
-  const float scale = most > least ? 255.0F / (most - least) : 0.0F;
+  // In double: a range of floats may be below or above the range of float.
+  const double low = least, scale = most > least ? 255 / (double{most} - low) : 0;
   for (const float value : values)
-    add_level(out, std::isfinite(value) ? std::lround((value - least) * scale) : 0);
+    add_level(out, std::isfinite(value) ? std::lround((double{value} - low) * scale) : 0);
   return out;
 }
 
@@ -50,11 +51,11 @@ void Board::note(const BalanceNote& note) {
                   json_string(note.text), note.before, note.predicted));
 }
 
-void Board::draw(const PicturePart& part) {
+bool Board::draw(const PicturePart& part) {
   const auto n_pixels =
       static_cast<std::size_t>(part.width) * static_cast<std::size_t>(part.height);
-  if (part.columns <= 0 || n_pixels > most_pixels) return;
-  if (!pictures_.contains(part.name) && pictures_.size() == most_pictures) return;
+  if (part.columns <= 0 || n_pixels > most_pixels) return true;
+  if (!pictures_.contains(part.name) && pictures_.size() == most_pictures) return false;
   Picture& picture = pictures_[part.name];
   if (picture.width != part.width || picture.height != part.height)
     picture = Picture{part.width, part.height,
@@ -67,6 +68,7 @@ void Board::draw(const PicturePart& part) {
                      static_cast<std::size_t>(x)] = part.values[i];
   }
   picture.changed = true;
+  return true;
 }
 
 std::vector<Event> Board::take_events(double seconds,
@@ -137,6 +139,7 @@ std::string Board::frame(double seconds, const std::function<std::string(PeId)>&
   std::uint64_t n_epochs = 0, n_migrations = 0, n_bytes = 0;
   double latest = 0;
   std::string late;
+  const bool passes_on = n_processes_ > 1 && pes_.front().is_new;
   for (OfPe& of : pes_) {
     const PeSample& now = of.last;
     const auto passed = static_cast<double>(now.at_ns - of.before.at_ns);
@@ -146,9 +149,13 @@ std::string Board::frame(double seconds, const std::function<std::string(PeId)>&
       of.percent = static_cast<int>(std::lround(std::clamp(100 * (1 - idle / passed), 0.0, 100.0)));
       of.rate = std::min(ran * 1e9 / passed, 2e9);
     }
+    of.n_missed = of.is_new ? 0 : of.n_missed + 1;
     if (!of.is_new) {  // perhaps it runs something long
       const auto index = static_cast<std::int32_t>(&of - pes_.data());
-      if (const std::string action = runs(PeId{index}); !action.empty()) {
+      std::string action = runs(PeId{index});
+      // Samples of other processes come through PE 0.
+      if (action.empty() && passes_on && of.n_missed > 1) action = "something long";
+      if (!action.empty()) {
         of.percent = 100;
         of.rate = 0;
         late += fmt::format("{}[{},{}]", late.empty() ? "" : ",", index, json_string(action));

@@ -36,7 +36,8 @@ class Board {
 
   void arrived(PeSample sample);
   void note(const BalanceNote& note);
-  void draw(const PicturePart& part);
+  /// False if it is left out, since the page has its most pictures.
+  bool draw(const PicturePart& part);
   /// The events since the last call, of which the last one is a frame. `runs(pe)` names the entry
   /// method that a PE of this process runs, or nothing. `seconds` is the wall time of the run.
   [[nodiscard]] std::vector<Event> take_events(double seconds,
@@ -60,6 +61,7 @@ class Board {
     bool is_new = false;  // came since the last frame
     int percent = 0;      // busy
     double rate = 0;      // messages a second
+    int n_missed = 0;     // frames since it came
   };
   struct Picture {
     std::int32_t width = 0, height = 0;

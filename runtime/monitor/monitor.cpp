@@ -162,7 +162,10 @@ class Monitor::Loop {
   }
   void draw(const PicturePart& part) {
     const std::lock_guard lock(mutex_);
-    board_->draw(part);
+    if (!board_->draw(part) && !std::exchange(said_left_out_, true))
+      runtime_.error_line(
+          text("tessera: show(\"", part.name,
+               "\"): the page has its 16 pictures; this and later ones are left out"));
   }
   void note(const BalanceNote& note) {
     const std::lock_guard lock(mutex_);
@@ -211,8 +214,10 @@ class Monitor::Loop {
       });
     };
     server_.emplace(io_, options, std::move(source));
-    runtime_.error_line(text("tessera: monitor on http://", options.address, ":", server_->port(),
-                             "/", options.token.empty() ? "" : "?token=…"));
+    const bool six = options.address.find(':') != std::string::npos;  // IPv6: [::1]
+    runtime_.error_line(text("tessera: monitor on http://", six ? "[" : "", options.address,
+                             six ? "]" : "", ":", server_->port(), "/",
+                             options.token.empty() ? "" : "?token=…"));
   }
 
   // On the thread of the monitor.
@@ -293,6 +298,7 @@ class Monitor::Loop {
   std::mutex mutex_;  // guards what follows, but not what only a PE uses
   std::vector<OfPe> of_pes_;
   std::optional<Board> board_;  // on process 0
+  bool said_left_out_ = false;  // pictures
   HeatWanted heat_;
   std::uint64_t told_ = 0;  // the version that the other processes have been told
   bool closed_ = false;

@@ -218,6 +218,9 @@ class Connection final : public Listener, public std::enable_shared_from_this<Co
 Tcp::acceptor bound(asio::io_context& io, const MonitorOptions& options) {
   beast::error_code error;
   const auto address = asio::ip::make_address(options.address, error);
+  if (!error && options.token.empty() && !address.is_loopback())
+    fail(ErrorCode::bad_argument, "--monitor ", options.address, ":", options.port,
+         ": other machines can reach this address: give a token that they must know");
   Tcp::acceptor acceptor(io);
   const Tcp::endpoint at(address, options.port);
   if (!error) acceptor.open(at.protocol(), error);
@@ -237,16 +240,25 @@ std::string as_text(const Event& event) {
 }
 
 Server::Server(asio::io_context& io, const MonitorOptions& options, Source source)
-    : token_(options.token), source_(std::move(source)), acceptor_(bound(io, options)) {
+    : token_(options.token), source_(std::move(source)), acceptor_(bound(io, options)), retry_(io) {
   accept();
 }
 
 void Server::accept() {
   acceptor_.async_accept([this](beast::error_code error, Tcp::socket socket) {
     if (error == asio::error::operation_aborted) return;
-    if (!error && to_all_.size() + to_heat_.size() < most_listeners)
+    if (error) return accept_later();
+    if (to_all_.size() + to_heat_.size() < most_listeners)
       std::make_shared<Connection>(*this, std::move(socket))->read();
     accept();
+  });
+}
+
+/// After an error that may last: no descriptor is free, for instance.
+void Server::accept_later() {
+  retry_.expires_after(std::chrono::milliseconds(100));
+  retry_.async_wait([this](beast::error_code error) {
+    if (!error) accept();
   });
 }
 

@@ -17,6 +17,7 @@
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/steady_timer.hpp>
 
 #include <cstdint>
 #include <functional>
@@ -69,11 +70,13 @@ class Server {
 
  private:
   void accept();
+  void accept_later();
   void forget_gone();
 
   const std::string token_;
   const Source source_;
   boost::asio::ip::tcp::acceptor acceptor_;
+  boost::asio::steady_timer retry_;
   std::vector<std::weak_ptr<Listener>> to_all_;
   std::vector<std::pair<HeatMapId, std::weak_ptr<Listener>>> to_heat_;
 };

@@ -256,6 +256,7 @@ class Service::Loop {
   void begin_job(int signal) {
     if (job_) {  // one report serves both
       if (job_signal_ == browser && signal == SIGUSR1) print_later(signal);
+      if (job_signal_ == hang && signal == SIGUSR1) signalled_in_hang_ = true;
       return;
     }
     print_later(signal);
@@ -364,6 +365,7 @@ class Service::Loop {
   std::uint64_t n_rounds_ = 0;
   std::optional<JobReport> job_;  // process 0 collects the report of the job
   int job_signal_ = 0;
+  bool signalled_in_hang_ = false;  // SIGUSR1 came while it was asked whether the job hangs
   std::string job_heading_;
   std::uint64_t n_jobs_ = 0, asked_others_in_ = 0;
   Clock::time_point job_printed_{};
@@ -396,9 +398,10 @@ void Service::Loop::report() {
 void Service::Loop::print_job() {
   JobReport done = std::move(*job_);
   job_.reset();
+  const bool signalled = std::exchange(signalled_in_hang_, false);
   if (job_signal_ == hang && done.active()) {  // no hang; the askers want the whole report
     watch_->ask_later(Clock::now());
-    if (!askers_.empty()) begin_job(browser);
+    if (signalled || !askers_.empty()) begin_job(signalled ? SIGUSR1 : browser);
     return;
   }
   if (job_signal_ == hang) watch_->reported();

@@ -37,6 +37,8 @@ exits 2 "--time 1" "$bin" --steps 5 --time 1
 exits 2 "gredy" "$bin" --balance gredy
 exits 2 "periodic" "$bin" --balance greedy,when=periodic,period=1s
 exits 2 "needs --study" "$bin" --plot "$scratch/x.svg"
+exits 2 "would overwrite --json" "$bin" --study --json "$scratch/x.csv" --plot "$scratch/x.svg"
+exits 2 "would overwrite --trace" "$bin" --trace "$scratch/x.json" --json "$scratch/x.json"
 exits 2 "choose one" "$bin" --study --stability
 exits 2 "--json" "$bin" --json "$scratch/missing/x.json"
 exits 2 "--nonsense" "${mpirun[@]}" -n 2 "$bin" --nonsense

@@ -87,6 +87,7 @@ refuses "--study does not work with --round-trips" "${alone[@]}" --round-trips 1
 refuses "--steps 5 does not work with --round-trips" "${alone[@]}" --round-trips 1 --steps 5
 refuses "--kind linear does not work with --stability" "${alone[@]}" --kind linear --stability
 refuses "mesh kuhn:4 does not work with --stability" "${alone[@]}" kuhn:4 --stability
+refuses "--fields: x is given twice" "${transfer[@]}" kuhn:2 kuhn:2 --fields x,sin --fields x
 refuses "--fields sin does not work with --stability" "${alone[@]}" --stability --fields sin
 refuses "--voxel 0.5 does not work with --stability" "${alone[@]}" --stability --voxel 0.5
 refuses "--per-pe does not work with --stability" "${alone[@]}" --stability --per-pe 3
@@ -156,6 +157,22 @@ refuses "--time: nan is not a number above 0" "$bin/coupled" --time nan
 refuses "--substeps 3 .* --reaction" "$bin/coupled" --substeps 3
 refuses "--balance-every 3 .* --balance" "$bin/coupled" --balance-every 3
 
+# Options that a program would ignore.
+refuses "--balance: is empty" "$bin/coupled" --balance ''
+refuses "--balance: is empty" "$bin/amr" --balance ''
+refuses "--balance: is empty" "$bin/leanmd" --balance ''
+refuses "--expect 99: --first does not count" "$bin/nqueens" 8 --first --expect 99
+for unused in "--form chares" "--grain 4" --first; do
+  refuses "${unused% *} does not work with --study" "$bin/nqueens" 8 --study $unused
+done
+refuses "--order does not work with --study" "$bin/amr" --study --order 3
+for unused in "--balance greedy" "--order 3" "--max-level 3" "--steps 4" "--json $scratch/result.json"; do
+  refuses "${unused%% *} does not work with --stability" "$bin/amr" --stability $unused
+done
+refuses "--by: needs a --heat map" "$bin/tess_monitor" --by pe
+refuses "--level '': give single or funneled" "$bin/embedded" --level
+refuses "--level 'double'" "$bin/embedded" --pes 1 --level double
+
 crowd=("$bin/collide_scaling" --study strong --pes 1 --triangles 2048)
 refuses "no balance strategy 'gredy'" "${crowd[@]}" --balance gredy
 refuses "--steps 5: greedy_refine balances after every 5 steps" "${crowd[@]}" --steps 5
@@ -177,6 +194,13 @@ refuses "missing.exo: cannot be opened" "${scaling[@]}" "$scratch/missing.exo" k
 refuses "nan.msh: vertex" "${scaling[@]}" kuhn:2 "$scratch/nan.msh"
 refuses "kind 'all' is unknown" "${scaling[@]}" kuhn:2 kuhn:2 --kind all
 refuses "--sim pes=3 names a number of PEs" "${scaling[@]}" kuhn:2 kuhn:2 --sim pes=3
+refuses "--sim: 3 PEs do not divide into processes of 2" "$bin/m2m_scaling" kuhn:2 kuhn:3 --pes 4,3 --sim per-process=2
+# Each machine is the one of --sim, and has its forced migrations.
+"$bin/m2m_scaling" kuhn:2 kuhn:3 --pes 1,2,6 --sim per-process=2 >"$scratch/out" && pass || fail "m2m_scaling refuses per-process=2"
+for chance in 0 0.5; do
+  "${scaling[@]}" kuhn:2 kuhn:3 --pes 2 --sim seed=3,cost=1ms,migrate=$chance >"$scratch/migrate.$chance" && pass || fail "m2m_scaling migrate=$chance"
+done
+! cmp -s "$scratch/migrate.0" "$scratch/migrate.0.5" && pass || fail "m2m_scaling migrates nothing"
 refuses "--out $scratch/missing/x.svg: cannot be written" "${scaling[@]}" kuhn:2 kuhn:2 --out "$scratch/missing/x"
 
 # A study leaves nothing in its folder.
@@ -195,6 +219,7 @@ job=(timeout 60 "${mpirun[@]}")
 refuses missing.exo "${job[@]}" -n 2 "${transfer[@]}" "$scratch/missing.exo" kuhn:2 --pes 2
 refuses perhaps "${job[@]}" -n 2 "${transfer[@]}" kuhn:2 kuhn:2 --field 'perhaps(x)' --pes 1
 refuses --nonsense "${job[@]}" -n 2 "$bin/hello" --nonsense
+refuses --pes "${job[@]}" -n 2 "$bin/embedded" --pes 0
 # The exit code of each process.
 printf '#!/bin/sh\n"$@"\necho $? >"%s/code.$OMPI_COMM_WORLD_RANK"\n' "$scratch" >"$scratch/keep_code"
 chmod +x "$scratch/keep_code"
@@ -211,7 +236,7 @@ for fault in "$scratch/missing.exo kuhn:2" "kuhn:2 kuhn:2 --nonsense" "kuhn:2 ku
 done
 
 # The help is printed once.
-for program in hello ring m2m_transfer; do
+for program in hello ring m2m_transfer embedded; do
   if "${job[@]}" -n 2 "$bin/$program" --help >"$scratch/out" 2>"$scratch/err" &&
     [[ $(grep -ci '^usage' "$scratch/out") -eq 1 && ! -s $scratch/err ]]; then
     pass

@@ -17,6 +17,13 @@ bool has_line(const std::string& text, const std::string& line) {
   return ("\n" + text).find("\n" + line + "\n") != std::string::npos;
 }
 
+/// Takes one option.
+void parse(apps::CommandLine& line, std::string option, std::string value) {
+  std::array<std::string, 3> words{"program", std::move(option), std::move(value)};
+  std::array<char*, 3> arguments{words[0].data(), words[1].data(), words[2].data()};
+  (void)line.parse(3, arguments.data());
+}
+
 }  // namespace
 
 TEST_CASE("the help has each option with what it takes, its range and its default",
@@ -76,6 +83,29 @@ TEST_CASE("a value outside of the range is refused with the range", "[apps][comm
   CHECK_THROWS_WITH(line.parse(3, argv), Catch::Contains("65") && Catch::Contains("1 to 64"));
 }
 
+TEST_CASE("a real number between two whole ones is taken, and none beyond them",
+          "[apps][command_line]") {
+  double factor = 0;
+  std::vector<double> factors;
+  apps::CommandLine line("A program.");
+  line.option("--factor", factor, "of the law").between(0, 2);
+  line.option("--factors", factors, "of the laws").separated_by(',').between(0, 2);
+  CHECK(has_line(line.help(), "  --factor X  of the law (0 to 2)"));
+  for (const char* const value : {"0", "0.5", "1e-3", "2"}) {
+    CAPTURE(value);
+    parse(line, "--factor", value);
+    CHECK(factor == std::stod(value));
+  }
+  parse(line, "--factors", "0.25,1.5");
+  CHECK(factors == std::vector<double>{0.25, 1.5});
+  for (const char* const value : {"-0.1", "2.001", "nan", "inf", "two"}) {
+    CAPTURE(value);
+    CHECK_THROWS_WITH(parse(line, "--factor", value), Catch::Contains("--factor: Value ") &&
+                                                          Catch::Contains(value) &&
+                                                          Catch::Contains("not in range 0 to 2"));
+  }
+}
+
 TEST_CASE("the last value of an option that is given again counts, and a list has all",
           "[apps][command_line]") {
   std::int32_t n_steps = 4;
@@ -99,6 +129,20 @@ TEST_CASE("the last value of an option that is given again counts, and a list ha
   CHECK(levels == std::vector<std::int32_t>{1, 2});
 }
 
+TEST_CASE("a whole number is decimal, and begins with no zero", "[apps][command_line]") {
+  for (const std::string wrong : {"010", "-010", "0x10", "00"}) {
+    std::int32_t value = 5;
+    apps::CommandLine line("A program.");
+    line.option("--number", value, "a number");
+    CHECK_THROWS_WITH(parse(line, "--number", wrong), Catch::Contains("begins with a zero"));
+  }
+  std::int32_t value = 5;
+  apps::CommandLine line("A program.");
+  line.option("--number", value, "a number");
+  parse(line, "--number", "0");
+  CHECK(value == 0);
+}
+
 TEST_CASE("an option without a sign takes no negative number, nor one beyond 64 bits",
           "[apps][command_line]") {
   std::uint64_t seed = 1;
@@ -108,20 +152,15 @@ TEST_CASE("an option without a sign takes no negative number, nor one beyond 64 
   line.option("--seed", seed, "of the work");
   line.option("--bytes", bytes, "of a message");
   line.option("--limits", limits, "of PEs").separated_by(',');
-  const auto parse = [&](std::string option, std::string value) {
-    std::array<std::string, 3> words{"program", std::move(option), std::move(value)};
-    std::array<char*, 3> arguments{words[0].data(), words[1].data(), words[2].data()};
-    (void)line.parse(3, arguments.data());
-  };
   for (const char* const option : {"--seed", "--bytes", "--limits"}) {
     CAPTURE(option);
     for (const char* const value : {"-1", "18446744073709551616"})
       CHECK_THROWS_WITH(
-          parse(option, value),
+          parse(line, option, value),
           Catch::Contains(option) && Catch::Contains(value) &&
               Catch::Contains("is not a whole number from 0 to 18446744073709551615"));
   }
-  CHECK_THROWS_WITH(parse("--limits", "5,-1"), Catch::Contains("-1 is not a whole number"));
-  parse("--limits", "5,18446744073709551615");
+  CHECK_THROWS_WITH(parse(line, "--limits", "5,-1"), Catch::Contains("-1 is not a whole number"));
+  parse(line, "--limits", "5,18446744073709551615");
   CHECK(limits == std::vector<std::uint64_t>{5, 18446744073709551615U});
 }

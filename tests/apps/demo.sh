@@ -39,4 +39,21 @@ if [[ $? -ne 2 ]] || ! grep -q usage "$scratch/err"; then
   echo "FAILED: the demo accepts --nonsense"
   code=1
 fi
+bash "$demo" --into >/dev/null 2>"$scratch/err"
+if [[ $? -ne 2 ]] || ! grep -q usage "$scratch/err"; then
+  echo "FAILED: the demo accepts --into without a folder"
+  code=1
+fi
+# A folder is relative to where the demo is started. What it would install, build and mesh with is replaced.
+mkdir -p "$scratch/tree/apps" "$scratch/tree/cmake" "$scratch/fake"
+cp "$demo" "$scratch/tree/apps/demo.sh"
+: >"$scratch/tree/cmake/setup.sh"
+printf '#!/bin/sh\n' >"$scratch/fake/cmake"
+printf '#!/bin/sh\nexit 1\n' >"$scratch/fake/gmsh"
+chmod +x "$scratch"/fake/*
+(cd "$scratch" && PATH=$scratch/fake:$PATH bash tree/apps/demo.sh --into results >"$scratch/out" 2>&1)
+if [[ ! -d $scratch/results || -e $scratch/tree/results ]]; then
+  echo "FAILED: --into results is not below the working folder"
+  code=1
+fi
 exit $code

@@ -65,6 +65,8 @@ same "${coupled[@]}" --pes 2 --slabs 5
 same "${coupled[@]}" --pes 3 --slabs 9
 same "${mpirun[@]}" -n 2 "${coupled[@]}" --pes 1 --slabs 4
 same "${coupled[@]}" --sim pes=5,cost=100ns,seed=3 --slabs 7
+# The small box moves a fifth of a cube a step, however short the time is.
+answers ' 60 steps' "${coupled[@]}" --time 1e-6 --pes 2
 # Slabs that migrate between transfers: the same bits, and less time where the work is unequal.
 burning=("${coupled[@]}" --time 0.0015 --reaction 1000)
 answers 'hash' "${burning[@]}" --pes 1 --slabs 1
@@ -140,5 +142,15 @@ check "lb_lab --replay --json writes no rows" $?
 timeout 60 "${lab[@]}" --workload linear --per-pe 4 --iterations 10 --period 5 --sim pes=2,cost=1us --save-snapshot "$scratch/snapshots" --snapshot-format json >"$scratch/out" 2>&1
 [[ $(echo "$scratch"/snapshots/linear-4-greedy/*) == "$scratch/snapshots/linear-4-greedy/data.0.json $scratch/snapshots/linear-4-greedy/data.1.json" ]]
 check "files of a run on more PEs stay in the folder of snapshots" $?
+
+answers 'hash' "${coupled[@]}" --reaction 0.5
+
+# The curves of a scaling study are named by what its clock counts, and by the balancer where there are several.
+timeout 60 "$bin/collide_scaling" --pes 1 --triangles 2048 --pair-ns 10 --steps 6 --balance none,greedy_refine --out "$scratch/weak" >"$scratch/out" 2>&1
+check "collide_scaling with two balancers" $?
+for name in none greedy_refine; do
+  grep -q "^\"modelled work and messages, $name\",1," "$scratch/weak.csv"
+  check "collide_scaling names the curve of $name" $?
+done
 
 finish

@@ -76,6 +76,11 @@ fails 2 "gredy" --balance gredy
 fails 2 "missing" --json "$scratch/missing/x.json"
 fails 2 "is for --study" --plot "$scratch/x.svg"
 fails 2 "--study" --study --dt 0.9
+fails 2 "would overwrite --json" --study --json "$scratch/x.csv" --plot "$scratch/x.svg"
+fails 2 "would overwrite --trace" --trace "$scratch/x.json" --json "$scratch/x.json"
+fails 2 "does not work with --stability" --stability --json "$scratch/x.json"
+fails 2 "does not work with --stability" --stability --explain
+fails 2 "does not work with --study" --study --explain
 timeout 60 "$leanmd" --stability --pes 1 >"$scratch/out" 2>&1 && grep -q " 0 failed" "$scratch/out" && pass || fail "--stability"
 
 finish

@@ -43,6 +43,7 @@ exits 2 "--form" "$bin" 8 --form tree
 exits 2 "--priority" "$bin" 8 --priority 3
 exits 2 "--study" "$bin" 8 --study --first
 exits 2 "needs --study" "$bin" 8 --plot "$scratch/x.svg"
+exits 2 "would overwrite --json" "$bin" 8 --study --json "$scratch/x.svg" --plot "$scratch/x.svg"
 exits 2 ".svg" "$bin" 8 --study --plot "$scratch/x.png"
 exits 2 "--json" "$bin" 8 --json "$scratch/missing/x.json"
 exits 2 "--nonsense" "${mpirun[@]}" -n 2 "$bin" 8 --nonsense

@@ -113,4 +113,23 @@ want=$(hash_of "$scratch/run.json")
 runs bash "$(dirname "$0")/../../apps/run_forever.sh" "$scratch/forever" bash "$scratch/dies" "${problem[@]}" --checkpoint-every 4
 says 'started again from checkpoint-'
 same "run_forever.sh"
+
+# Ctrl-C sends SIGINT to the script and to mpirun, which ends with 1: the program is not started again.
+printf '#!/bin/sh\necho >>"%s/starts"\nexec sleep 60\n' "$scratch" >"$scratch/sleeps"
+setsid env --default-signal=INT bash "$(dirname "$0")/../../apps/run_forever.sh" "$scratch/none" \
+  "${mpirun[@]}" -n 1 sh "$scratch/sleeps" >"$scratch/out" 2>&1 </dev/null &
+job=$!
+for ((i = 0; i < 200; ++i)); do
+  [[ -s $scratch/starts ]] && break
+  sleep 0.1
+done
+kill -INT -- -$job
+for ((i = 0; i < 200; ++i)); do
+  kill -0 $job 2>/dev/null || break
+  sleep 0.1
+done
+kill -KILL -- -$job 2>/dev/null
+wait $job
+code=$?
+[[ $code -eq 130 && $(wc -l <"$scratch/starts") -eq 1 ]] && pass || fail "run_forever.sh after SIGINT: exit code $code"
 finish

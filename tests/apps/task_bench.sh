@@ -84,6 +84,8 @@ rows = list(csv.DictReader(open(sys.argv[2])))
 assert len(rows) == sum(len(one["rows"]) for one in results)
 PYTHON
 [[ -s $scratch/m.csv ]] || fail "no m.csv"
+fails 2 "would overwrite --json" "$bin" --json "$scratch/x.csv" --plot "$scratch/x.svg"
+fails 2 "would overwrite --json" "$bin" --json "$scratch/x.csv" --csv "$scratch/x.csv"
 
 # Persistent imbalance with four columns per PE: greedy_refine removes it. The times of the simulated machine are exact.
 seconds_of() { timeout 60 "$@" | sed -n 's/^Elapsed Time \(.*\) seconds/\1/p'; }
@@ -112,6 +114,9 @@ fails 2 "-output 8" "$bin" -output 8
 fails 2 "-imbalance 3" "$bin" -kernel load_imbalance -imbalance 3
 fails 2 "-fraction" "$bin" -fraction 1.5
 fails 2 "no grain" "$bin" -metg -kernel empty
+fails 2 "leave -iter out" "$bin" -metg -iter 100
+fails 2 "--balance-every" "$bin" --balance-every 5
+fails 2 "--balance-every" "$bin" --balance greedy,when=periodic,period=1ms --balance-every 5
 fails 2 "gredy" "$bin" --balance gredy
 fails 2 "--spoil" "$bin" --spoil 3
 fails 2 "no graph has a task" "$bin" -steps 4 -width 4 --spoil 4,0

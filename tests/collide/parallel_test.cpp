@@ -295,7 +295,7 @@ Problem problem_of(std::uint64_t seed) {
   problem.scene = {seed,
                    static_cast<std::int32_t>(1 + seed % 7),
                    static_cast<std::int32_t>(20 + seed % 3 * 10),
-                   static_cast<std::int32_t>(1 + seed % 3),
+                   static_cast<std::int32_t>(seed / 8 % 4 == 3 ? 12 : 1 + seed % 3),
                    0,
                    0,
                    seed % 5 < 2 ? static_cast<std::int32_t>(seed % 9) : 0};

@@ -55,6 +55,15 @@ for component in "${components[@]}"; do
   fi
 done
 
+# The project installs its programs, and nothing of Tessera.
+cmake --install "$scratch/build" --prefix "$scratch/there" >"$scratch/log" 2>&1 || { tail -5 "$scratch/log"; failed=1; }
+if [[ $(find "$scratch/there" -type f -printf '%f\n' | sort) == $(printf 'uses_%s\n' "${components[@]}" | sort) ]]; then
+  echo "ok: installs its programs"
+else
+  echo "FAILED: the project installs $(find "$scratch/there" -type f -printf '%P ')"
+  failed=1
+fi
+
 [[ " ${components[*]} " != *" runtime "* ]] || prints "20 seeds pass" "$scratch/build/uses_testing"
 
 # Chares of the program, which migrate between the transfers of a coupling.

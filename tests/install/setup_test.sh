@@ -13,7 +13,12 @@ F
 cat >"$scratch/bin/apt-get" <<'F'
 #!/bin/sh
 case " $* " in
-  *" -s "*) for name in $REMOVES; do echo "Remv $name [1.74]"; done; [ -z "$UNKNOWN" ] || [ -e "$STATE/updated" ] ;;
+  *" -s "*)
+    for name in $REMOVES; do echo "Remv $name [1.74]"; done
+    if [ "$UNKNOWN" = always ] || { [ -n "$UNKNOWN" ] && [ ! -e "$STATE/updated" ]; }; then
+      echo "E: Unable to locate package gmsh" >&2
+      exit 100
+    fi ;;
   *" update "*) touch "$STATE/updated" ;;
   *) echo "$*" >>"$STATE/installed" ;;
 esac
@@ -48,6 +53,8 @@ expect "nothing is missing" 0 "packages are installed" no HAVE=all --
 expect "installs what is missing" 0 "setup: done" yes HAVE=g++-12 --
 expect "lists are fetched first" 0 "fetching apt's lists" yes UNKNOWN=1 --
 expect "a dry run" 0 "would install g++-12" no -- --dry-run
+expect "a dry run on a fresh machine" 0 "it would fetch its lists first" no UNKNOWN=1 -- --dry-run
+expect "a package is unknown, or there is no network" 2 "E: Unable to locate package gmsh; nothing was changed" no UNKNOWN=always --
 expect "Boost would be removed" 2 "apt would remove libboost1.74-dev libcgal-dev" no "REMOVES=libboost1.74-dev libcgal-dev" --
 expect "a dry run says so, too" 2 "-DBoost_ROOT" no REMOVES=libboost1.74-dev -- --dry-run
 needed=$(sed -n '/^packages=(/,/^)/p' "$setup" | tr '\n' ' ')

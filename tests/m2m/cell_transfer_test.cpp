@@ -1,8 +1,10 @@
 // Fields in elements, moved by each kind between meshes of each type of element.
 #include "m2m/cell_transfer.hpp"
 
+#include "apps/worst.hpp"
 #include "m2m/workers/cell_worker.hpp"
 #include "runtime/core/error.hpp"
+#include "runtime/here.hpp"
 #include "runtime/testing.hpp"
 #include "tests/m2m/element_meshes.hpp"
 #include "tests/support/catch.hpp"
@@ -65,10 +67,9 @@ struct CellCase {
   std::int32_t n_parts = 1;
   OutsidePolicy policy = Keep{};
 };
-CellOutcome moved_cells(const CellCase& c, std::uint64_t seed) {
+CellOutcome moved_cells(const CellCase& c, std::uint64_t seed, const std::vector<Field>& fields) {
   const test::Machine machine{.pes = 1 + static_cast<int>(seed % 4), .seed = seed};
   CellOutcome outcome;
-  const std::vector<Field> fields{cell_field(*c.source)};
   machine
       .run([&]() -> Task {
         return transfer_cells(*c.source, fields, *c.target, c.n_parts, PartitionMethod::curve,
@@ -76,6 +77,9 @@ CellOutcome moved_cells(const CellCase& c, std::uint64_t seed) {
       })
       .require_success();
   return outcome;
+}
+CellOutcome moved_cells(const CellCase& c, std::uint64_t seed) {
+  return moved_cells(c, seed, {cell_field(*c.source)});
 }
 
 bool is_exact(TransferKind kind) {
@@ -91,6 +95,19 @@ Task attempt_cells(const CellCase& c, std::string* message) {
   } catch (const Error& error) {
     *message = error.what();
   }
+}
+
+Task refused_cells(const TetMesh& mesh, TransferOptions options, std::string* message,
+                   std::size_t* n_left) {
+  const std::vector<Field> fields{cell_field(mesh)};
+  CellOutcome outcome;
+  const std::size_t before = n_collections();
+  try {
+    co_await transfer_cells(mesh, fields, mesh, 2, PartitionMethod::curve, options, &outcome);
+  } catch (const Error& error) {
+    *message = error.what();
+  }
+  *n_left = n_collections() - before;
 }
 
 /// Options are looked at before anything is sent, so the arrays may have no elements.
@@ -124,7 +141,7 @@ TEST_CASE("kinds with gradients are exact for linear fields between all types of
         double error = 0;
         bool twice = true;
         for (std::size_t t = 0; t < target.n_tets(); ++t) {
-          error = std::max(error, std::abs(got.values[2 * t] - mean_at(target, t)));
+          apps::worsen(error, std::abs(got.values[2 * t] - mean_at(target, t)));
           twice = twice && std::abs(got.values[2 * t + 1] + 2 * got.values[2 * t]) < 1e-13;
         }
         CHECK(twice);
@@ -159,11 +176,72 @@ TEST_CASE("limits leave linear fields as they are inside", "[m2m][cells]") {
       });
       if (!inner) continue;
       ++n_inner;
-      error = std::max(error, std::abs(found.fields[0].values[2 * t] - mean_at(target, t)));
+      apps::worsen(error, std::abs(found.fields[0].values[2 * t] - mean_at(target, t)));
     }
     CHECK(n_inner > 100);
     CHECK(error < 1e-13);
   }
+}
+
+TEST_CASE("from a single layer of elements, flat up to rounding or curved, cells get near values",
+          "[m2m][cells][one_thread]") {
+  for (const test::Layer& layer : test::layers) {
+    const TetMesh source = test::layer_mesh(20, layer.place),
+                  target = test::layer_mesh(27, layer.place);
+    Field field{"q", 1, {}};
+    std::map<GlobalId, std::vector<std::size_t>> tets;
+    for (std::size_t t = 0; t < source.n_tets(); ++t) tets[source.element_of_tet[t]].push_back(t);
+    field.values.resize(source.n_tets());
+    for (const auto& [element, its] : tets) {
+      double mean = 0;
+      for (const std::size_t t : its)
+        mean += test::wave_at(mean_of_corners(corners_at(source, t)), layer.origin);
+      for (const std::size_t t : its) field.values[t] = mean / static_cast<double>(its.size());
+    }
+    for (const TransferKind kind : {TransferKind::second_order, TransferKind::conservative}) {
+      INFO(name_of(kind) << " between layers on a " << layer.name);
+      const CellOutcome found = moved_cells({kind, &source, &target, 3}, 1, {field});
+      double error = 0;
+      std::size_t n_found = 0;
+      for (std::size_t t = 0; t < target.n_tets(); ++t) {
+        if (found.status[t] == Status::outside) continue;
+        ++n_found;
+        const double want = test::wave_at(mean_of_corners(corners_at(target, t)), layer.origin);
+        apps::worsen(error, std::abs(found.fields[0].values[t] - want));
+      }
+      CHECK(n_found > target.n_tets() / 2);
+      CHECK(error < 0.1);
+    }
+  }
+}
+
+TEST_CASE("without fields the cells get their status", "[m2m][cells]") {
+  const TetMesh source = element_mesh(ElementType::hex8, source_bricks);
+  TetMesh target = element_mesh(ElementType::tet4, target_bricks);
+  for (Point& p : target.points) p[0] += 0.5;
+  for (const TransferKind kind : all_transfer_kinds) {
+    INFO(name_of(kind));
+    const CellOutcome found = moved_cells({kind, &source, &target, 3}, 2, {});
+    CHECK(found.fields.empty());
+    CHECK(found.status == moved_cells({kind, &source, &target, 3}, 2).status);
+  }
+}
+
+TEST_CASE("transfers of cells that are refused leave no pieces behind", "[m2m][cells]") {
+  const TetMesh mesh = element_mesh(ElementType::wedge6, 2);
+  const auto refusal = [&](TransferOptions options) {
+    std::string message;
+    std::size_t n_left = 1;
+    const test::Machine machine{.pes = 2, .seed = 1};
+    machine.run([&]() -> Task { return refused_cells(mesh, options, &message, &n_left); })
+        .require_success();
+    CHECK(n_left == 0);
+    return message;
+  };
+  CHECK_THAT(refusal({.kind = TransferKind::second_order, .tolerance = -1}),
+             Catch::Contains("tolerance -1 is not a length"));
+  CHECK_THAT(refusal({.kind = TransferKind::conservative, .clamp = true}),
+             Catch::Contains("kind conservative has no donors"));
 }
 
 TEST_CASE("fields in elements get the same bits for any number of parts and any schedule",

@@ -5,6 +5,8 @@
 #include "m2m/mesh.hpp"
 
 #include <array>
+#include <cmath>
+#include <functional>
 #include <map>
 #include <vector>
 
@@ -81,6 +83,65 @@ inline m2m::TetMesh element_mesh(m2m::ElementType type, int n) {
 }
 
 /// 1 + 2x - 3y + 5z
+/// One layer of n × n hexahedra of edge 1 / n, each vertex at `place` of where it is on the plane.
+inline m2m::TetMesh layer_mesh(int n, const std::function<m2m::Point(const m2m::Point&)>& place) {
+  m2m::TetMesh mesh;
+  mesh.name = "layer";
+  const double edge = 1.0 / n;
+  for (int k = 0; k < 2; ++k)
+    for (int j = 0; j <= n; ++j)
+      for (int i = 0; i <= n; ++i) mesh.points.push_back(place({i * edge, j * edge, k * edge}));
+  m2m::ElementSplitter splitter(mesh);
+  const m2m::VertexId row = n + 1, top = row * row;
+  for (m2m::VertexId j = 0; j < n; ++j)
+    for (m2m::VertexId i = 0; i < n; ++i) {
+      const m2m::VertexId v = j * row + i;
+      splitter.add(m2m::ElementType::hex8,
+                   std::vector{v, v + 1, v + row + 1, v + row, v + top, v + top + 1,
+                               v + top + row + 1, v + top + row});
+    }
+  splitter.finish();
+  return mesh;
+}
+/// Turned out of the planes of the axes.
+inline m2m::Point turned(const m2m::Point& p) {
+  const double c = std::cos(0.3), s = std::sin(0.3);
+  const double x = c * p[0] - s * p[2], z = s * p[0] + c * p[2];
+  return {x, c * p[1] - s * z, s * p[1] + c * z};
+}
+struct Layer {
+  const char* name;
+  m2m::Point origin;
+  m2m::Point (*place)(const m2m::Point&);
+};
+/// Single layers that are flat up to rounding, or curved. A field is smooth in the distance from
+/// the origin.
+inline constexpr std::array layers{
+    Layer{"plane", {0, 0, 0}, turned},
+    Layer{"plane in float",
+          {0, 0, 0},
+          [](const m2m::Point& p) {
+            m2m::Point q = turned(p);
+            for (double& x : q) x = static_cast<float>(x);
+            return q;
+          }},
+    Layer{"plane far away",
+          {1000, 700, -300},
+          [](const m2m::Point& p) {
+            const m2m::Point q = turned(p);
+            return m2m::Point{1000 + q[0], 700 + q[1], q[2] - 300};
+          }},
+    Layer{"cylinder",
+          {0, 0, 0},
+          [](const m2m::Point& p) {
+            const double r = 10 + p[2], angle = p[0] / 10;
+            return m2m::Point{r * std::sin(angle), p[1], r * std::cos(angle) - 10};
+          }},
+};
+inline double wave_at(const m2m::Point& p, const m2m::Point& origin) {
+  return std::sin(3 * (p[0] - origin[0])) + std::cos(2 * (p[1] - origin[1]));
+}
+
 inline double linear_at(const m2m::Point& p) {
   return 1 + 2 * p[0] - 3 * p[1] + 5 * p[2];
 }

@@ -232,3 +232,20 @@ TEST_CASE("of equal errors the first vertex is named, of bad truths the first co
     CHECK(refused.vertex == 6);
   } while (std::next_permutation(order.begin(), order.end()));
 }
+
+TEST_CASE("norms whose squares leave the range of double are NaN, not zero", "[m2m][norms]") {
+  for (const double scale : {1e-170, 1e170}) {
+    std::vector<double> second = smooth_values();
+    for (double& x : second) x *= scale;
+    const std::string formula = scale < 1 ? "1e-170*sin(3*z)" : "1e170*sin(3*z)";
+    const Answer answer = run_threads(2, {6}, second, {{"x*y", {}}, {formula, {}}});
+    const FieldNorms& norms = answer.norms.at(1);
+    CAPTURE(scale);
+    CHECK(norms.found.linf > 0);
+    CHECK(norms.found.linf < scale);
+    CHECK(std::isnan(norms.found.l2));
+    CHECK(std::isnan(norms.found.l2_relative));
+    CHECK(std::isnan(norms.found.rms));
+    CHECK(answer.norms.at(0).found.l2 > 0);
+  }
+}

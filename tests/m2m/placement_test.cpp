@@ -2,6 +2,7 @@
 // same bytes.
 #include "m2m/placement.hpp"
 
+#include "m2m/io/exodus/netcdf_header.hpp"
 #include "m2m/io/ranges/mesh_ranges.hpp"
 #include "m2m/kuhn.hpp"
 #include "m2m/partition/curve_cut.hpp"
@@ -412,6 +413,24 @@ TEST_CASE("a range with a vertex that does not exist is refused", "[m2m][placeme
       CHECK_NOTHROW(ranges->tets(0, tets));
       CHECK_THROWS_WITH(ranges->tets(1, tets), Catch::Contains(words + std::to_string(bad + 1)));
     }
+  }
+}
+
+TEST_CASE("a file that read_mesh() refuses as a whole is not read in ranges", "[m2m][placement]") {
+  const test::Scratch scratch;
+  TetMesh mesh = kuhn_mesh({2});
+  std::string gmsh = gmsh_bytes(mesh, 1, false);
+  ++gmsh[gmsh.find("$Elements\n") + 10 + 8];  // the number of elements
+  mesh.blocks = {{1, "", 20}, {2, "", mesh.n_tets() - 20}};
+  write_exodus(scratch.path("a.exo"), mesh, {});
+  std::string exodus = test::slurp(scratch.path("a.exo"));
+  for (const NetcdfVariable& variable : read_netcdf_header("a.exo", exodus).variables)
+    if (variable.name == "eb_prop1") exodus[variable.begin + 7] = 1;  // also the second block
+  for (const auto& [name, words] :
+       {std::pair{scratch.write("a.msh", gmsh), "elements announced"},
+        std::pair{scratch.write("b.exo", exodus), "two blocks or sets with the same number"}}) {
+    CHECK(open_ranges(name, RangeCheck::all) == nullptr);
+    CHECK_THROWS_WITH(read_mesh(name), Catch::Contains(words));
   }
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 namespace collide_scene {
 namespace {
@@ -44,8 +45,10 @@ std::vector<StudyRow> study(const Scene& scene, const Options& options, apps::Pr
   constexpr std::array factors{1.0, 0.125, 0.25, 0.5, 2.0, 4.0, 8.0, 16.0};
   const std::uint32_t n_kinds = scene.triangles.empty() ? 1 : 2;
   std::vector<StudyRow> rows;
+  std::optional<Answer> reference;  // of the objects, that of the first row that is not refused
   for (std::uint32_t kind = 0; kind < n_kinds; ++kind) {
     const std::size_t chosen = rows.size();
+    reference.reset();
     for (const double factor : factors) {
       progress.part(rows.size() + 1, n_kinds * factors.size());
       progress.phase("study: voxel sizes");
@@ -54,20 +57,20 @@ std::vector<StudyRow> study(const Scene& scene, const Options& options, apps::Pr
       row.factor = factor;
       Rules rules = options.rules;
       rules.triangles = kind == 1;
-      if (factor != 1) {
-        rules.voxel_size = row.voxel_size = factor * rows[chosen].voxel_size;
-      }
+      // Whatever the options give: the first is the size that the library chooses.
+      rules.voxel_size = row.voxel_size = factor == 1 ? 0 : factor * rows[chosen].voxel_size;
       measure(scene, rules, row);
       if (factor == 1 && !(row.voxel_size > 0)) row.voxel_size = edge_per_object(scene);
+      if (row.note.empty() && !reference) reference = row.answer;
+      row.agrees = reference && row.note.empty() && row.answer.has_pairs_of(*reference);
       rows.push_back(row);
-      rows.back().agrees = row.answer.has_pairs_of(rows[chosen].answer);
     }
   }
-  const Answer exact = rows[rows.size() - factors.size()].answer;  // pairs of objects
+  // The last reference has the pairs of objects, if one of their searches was not refused.
   for (StudyRow& row : rows)
-    if (row.answer.n_pairs > 0)
+    if (reference && row.answer.n_pairs > 0)
       row.false_positive_rate =
-          1 - static_cast<double>(exact.n_pairs) / static_cast<double>(row.answer.n_pairs);
+          1 - static_cast<double>(reference->n_pairs) / static_cast<double>(row.answer.n_pairs);
   std::ranges::stable_sort(rows, [](const StudyRow& a, const StudyRow& b) {
     return a.objects != b.objects ? a.objects < b.objects : a.factor < b.factor;
   });

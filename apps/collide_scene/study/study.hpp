@@ -25,7 +25,7 @@ struct StudyRow {
   std::string note{};              ///< why the library refused this voxel size; then no numbers
 };
 
-/// Serial runs of the scene as it is, under the rules of the options.
+/// Serial runs of the scene as it is, under the rules of the options except their voxel size.
 [[nodiscard]] std::vector<StudyRow> study(const Scene& scene, const Options& options,
                                           apps::Progress& progress);
 

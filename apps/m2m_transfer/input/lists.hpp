@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace m2m_transfer {
@@ -18,6 +19,13 @@ namespace m2m_transfer {
       parts.back() += c;
   }
   return parts;
+}
+/// The same of an option that may be given several times.
+[[nodiscard]] inline std::vector<std::string> split_names(const std::vector<std::string>& lists) {
+  std::vector<std::string> names;
+  for (const std::string& list : lists)
+    for (std::string& name : split_at_commas(list)) names.push_back(std::move(name));
+  return names;
 }
 
 }  // namespace m2m_transfer

@@ -84,11 +84,9 @@ Task read_meshes(const Request& request, Problem& problem) {
   co_await read_one(problem, first);
   RunMesh& source = problem.meshes[first];
   problem.domain = source.survey.census.bounds;
-  for (const std::string& option : request.fields)
-    for (const std::string& name : split_at_commas(option)) {
-      problem.field_names.push_back(name);
-      problem.formulas.push_back(formula_of(name, problem.domain, source.name));
-    }
+  problem.field_names = split_names(request.fields);
+  for (const std::string& name : problem.field_names)
+    problem.formulas.push_back(formula_of(name, problem.domain, source.name));
   if (source.mesh) sample_fields(problem, first);
   std::vector<Task> tasks;
   for (std::size_t m = 0; m < problem.meshes.size(); ++m)

@@ -1,11 +1,14 @@
 #include "apps/particles/output/files.hpp"
 
 #include "apps/particles/output/picture.hpp"
+#include "apps/particles/study/study.hpp"
+#include "apps/plot/file_names.hpp"
 #include "apps/plot/write_file.hpp"
 #include "collide/dn_field/field_file.hpp"
 
 #include <filesystem>
 #include <fmt/format.h>
+#include <vector>
 
 namespace particles {
 namespace {
@@ -13,6 +16,42 @@ namespace fs = std::filesystem;
 
 std::string field_file(std::size_t object) {
   return fmt::format("field_{}.dnf", object);
+}
+
+/// Throws Error if a file that is written would replace one that is read or written.
+void refuse_to_overwrite(const Scene& scene, const Options& options, const std::string& trace) {
+  plot::FileNames names;
+  std::vector<fs::path> others{options.scene, options.json, trace};
+  names.reads("SCENE", options.scene);
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    others.emplace_back(scene.objects[i].field);
+    names.reads(fmt::format("objects[{}].field", i), scene.objects[i].field);
+  }
+  names.writes("--json", options.json);
+  names.writes("--trace", trace);
+  if (options.out.empty()) return;
+  const std::string what = "--out " + options.out + ":";
+  const Outputs& outputs = scene.outputs;
+  const fs::path in(options.out);
+  // Names in the folder differ from each other: each is compared with those outside only.
+  const auto check = [&](const fs::path& file) {
+    plot::FileNames(names).writes(what, (in / file).string());
+  };
+  for (std::size_t i = 0; outputs.fields && i < scene.objects.size(); ++i) check(field_file(i));
+  if (outputs.slice) check("field.svg");
+  if (outputs.trajectories > 0) {
+    check("paths.svg");
+    check("trajectories.pvd");
+    // The snapshots are too many to compare each.
+    for (const fs::path& other : others) {
+      const std::string name = other.filename().string();
+      if (name.starts_with("step_") && name.ends_with(".vtp"))
+        check(fs::path("trajectories") / name);
+    }
+  }
+  if (!options.study) return;
+  for (const std::string& picture : study_pictures())
+    for (const std::string& file : {picture, plot::data_path(picture)}) check(file);
 }
 
 /// Writes FOLDER/trajectories.pvd, which lists the snapshots by time, and
@@ -59,7 +98,8 @@ std::string vtp(const Snapshot& snapshot) {
       array("type=\"Int64\" Name=\"offsets\"", offsets));
 }
 
-void prepare_files(const Scene& scene, const Options& options) {
+void prepare_files(const Scene& scene, const Options& options, const std::string& trace) {
+  refuse_to_overwrite(scene, options, trace);
   plot::make_folder("--out " + options.out, options.out);
   plot::require_writable("--json", options.json);
   if (options.out.empty()) return;

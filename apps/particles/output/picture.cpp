@@ -60,21 +60,30 @@ class Frame2D {
         left, top, frame_width, height_);
     const double step = plot::tick_step(std::max(frame_width, height_) / scale_);
     const double base = top + height_;
+    // Far from the origin labels differ in their last digits only; long ones are set smaller.
+    const double farthest = std::max({std::abs(low_.x), std::abs(low_.x + frame_width / scale_),
+                                      std::abs(low_.y), std::abs(low_.y + height_ / scale_)});
+    const int digits =
+        std::clamp(2 + static_cast<int>(std::ceil(std::log10(farthest / step))), 6, 17);
+    const double font_size = std::min(12.0, 96.0 / (digits + 2));
     const auto each_tick = [step](double from, double length, const auto& draw) {
-      for (double i = std::ceil(from / step); i * step <= from + length; ++i) draw(i * step);
+      constexpr int most_ticks = 20;
+      const double first = std::ceil(from / step);
+      for (int i = 0; i < most_ticks && (first + i) * step <= from + length; ++i)
+        draw((first + i) * step);
     };
     each_tick(low_.x, frame_width / scale_, [&](double at) {
       out += fmt::format(
           "<path d=\"M{0:.1f} {1:.1f}v5\" stroke=\"#000\"/><text x=\"{0:.1f}\" "
-          "y=\"{2:.1f}\" text-anchor=\"middle\">{3:.6g}</text>\n",
-          left + (at - low_.x) * scale_, base, base + 18, at);
+          "y=\"{2:.1f}\" font-size=\"{5:.3g}\" text-anchor=\"middle\">{3:.{4}g}</text>\n",
+          left + (at - low_.x) * scale_, base, base + 18, at, digits, font_size);
     });
     each_tick(low_.y, height_ / scale_, [&](double at) {
       const double y = base - (at - low_.y) * scale_;
       out += fmt::format(
           "<path d=\"M{0} {1:.1f}h-5\" stroke=\"#000\"/><text x=\"{2}\" "
-          "y=\"{3:.1f}\" text-anchor=\"end\">{4:.6g}</text>\n",
-          left, y, left - 8, y + 4, at);
+          "y=\"{3:.1f}\" font-size=\"{6:.3g}\" text-anchor=\"end\">{4:.{5}g}</text>\n",
+          left, y, left - 8, y + 4, at, digits, font_size);
     });
     out += fmt::format("<text x=\"{}\" y=\"{:.1f}\" text-anchor=\"middle\">{}</text>\n",
                        left + frame_width / 2, base + 36, "xyz"[right_]);
@@ -270,6 +279,29 @@ std::string normals(const Layer& layer, const Frame2D& frame) {
   return path;
 }
 
+double largest(Vec3 size) {
+  return std::max({std::abs(size.x), std::abs(size.y), std::abs(size.z)});
+}
+
+/// The objects and where the particles begin, or all paths where that is one point; and a part of
+/// that around.
+Bounds window_of(const Scene& scene, const std::vector<Snapshot>& snapshots) {
+  Bounds window;
+  for (const SceneObject& object : scene.objects)
+    for (const Vec3 p : object.surface.vertices) window.extend(object.frame.to_world(p));
+  for (const Sample& sample : snapshots.front().samples) window.extend(sample.position);
+  if (window.low == window.high)
+    for (const Snapshot& snapshot : snapshots)
+      for (const Sample& sample : snapshot.samples)
+        if (std::isfinite(norm(sample.position))) window.extend(sample.position);
+  // Far from the origin a margin must not be lost in rounding.
+  const double size = largest(window.size());
+  const double reach = std::max(largest(window.low), largest(window.high));
+  const double margin = std::max({0.3 * size, (size > 0 ? 1e-9 : 1e-3) * reach, 1e-9});
+  const Vec3 around{margin, margin, margin};
+  return {window.low - around, window.high + around};
+}
+
 }  // namespace
 
 std::string slice_svg(const Field& field, int axis, double at) {
@@ -299,15 +331,7 @@ std::string slice_svg(const Field& field, int axis, double at) {
 }
 
 std::string paths_svg(const Scene& scene, const std::vector<Snapshot>& snapshots) {
-  // The window: the objects and where the particles begin, and a part of that around.
-  Bounds window;
-  for (const SceneObject& object : scene.objects)
-    for (const Vec3 p : object.surface.vertices) window.extend(object.frame.to_world(p));
-  for (const Sample& sample : snapshots.front().samples) window.extend(sample.position);
-  const Vec3 size = window.size();
-  const double margin = 0.3 * std::max({size.x, size.y, size.z, 1e-9});
-  window = {window.low - Vec3{margin, margin, margin}, window.high + Vec3{margin, margin, margin}};
-
+  const Bounds window = window_of(scene, snapshots);
   constexpr std::size_t most_dots = 5;
   const std::size_t last = snapshots.size() - 1, n_dots = std::min(most_dots, last);
   std::vector<std::size_t> dots;

@@ -37,7 +37,7 @@ Json json_of(const StudyRow& row) {
   out["look_up"] = row.look_up;
   out["rule"] = row.rule;
   for (const StudyColumn& column : study_columns())
-    if (row.*column.value >= 0) out[column.name] = row.*column.value;
+    if (row.*column.value != not_measured) out[column.name] = row.*column.value;
   return out;
 }
 

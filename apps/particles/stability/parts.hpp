@@ -2,13 +2,15 @@
 #pragma once
 
 #include "apps/particles/stability/cases.hpp"
+#include "apps/worst.hpp"
 #include "collide/dn_field/made_field.hpp"
 #include "collide/dn_field/stepper.hpp"
 
-#include <cmath>
 #include <utility>
 
 namespace tess::dn::stability {
+
+using apps::worsen;
 
 struct Rows {
   std::vector<StabilityRow> rows;
@@ -18,11 +20,6 @@ struct Rows {
         {std::move(name), std::move(parameter), value, met, tolerance, met <= tolerance});
   }
 };
-
-/// std::max, but NaN is the worst of all.
-inline void worsen(double& worst, double value) {
-  if (value > worst || std::isnan(value)) worst = value;
-}
 
 struct Particle {
   Vec3 position, velocity;

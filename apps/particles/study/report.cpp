@@ -94,8 +94,8 @@ std::string study_table(const std::vector<StudyRow>& rows) {
                        or_dash(row.stored), or_dash(row.look_up), row.rule);
     for (const StudyColumn& column : columns) {
       const double value = row.*column.value;
-      out +=
-          fmt::format(" {:>9}", value < 0 ? "-" : fmt::format(fmt::runtime(column.format), value));
+      out += fmt::format(
+          " {:>9}", value == not_measured ? "-" : fmt::format(fmt::runtime(column.format), value));
     }
     out += '\n';
   }
@@ -103,6 +103,12 @@ std::string study_table(const std::vector<StudyRow>& rows) {
          "lengths in the object's units, angles in degrees, RMS except for max and depth; step: "
          "speed x dt as a part of\nthe thickness; ns per particle and step: wall clock, and CPU "
          "time of the thread; the least of five measurements\n";
+}
+
+std::vector<std::string> study_pictures() {
+  std::vector<std::string> files;
+  for (const Picture& picture : pictures) files.emplace_back(picture.file);
+  return files;
 }
 
 void write_study(const std::string& folder, const std::vector<StudyRow>& rows) {

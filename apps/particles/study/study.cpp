@@ -149,7 +149,7 @@ class Study {
           (coarser == nullptr || other.resolution > coarser->resolution))
         coarser = &other;
     if (coarser == nullptr || !(coarser->distance_error > 0) || !(row.distance_error > 0))
-      return -1;
+      return not_measured;
     return std::log(coarser->distance_error / row.distance_error) /
            std::log((row.resolution - 1.0) / (coarser->resolution - 1.0));
   }
@@ -229,7 +229,7 @@ class Study {
       }
     row.look_up.clear();
     row.stored.clear();
-    row.bytes = -1;
+    row.bytes = not_measured;
     for (const double part : {1.0, 0.1}) {
       row.rule = part == 1 ? "tree of boxes, whole thickness" : "tree of boxes, way of a step";
       time_tree(part * subject_.thickness, row);

@@ -6,32 +6,37 @@
 #include "apps/particles/scene/scene.hpp"
 #include "apps/progress.hpp"
 
+#include <cmath>
 #include <span>
 #include <string>
 #include <vector>
 
 namespace particles {
 
-/// One choice. Lengths are in the object's units; a negative value was not measured in this row.
-/// Times are the least of several measurements (see least_cost()).
+/// Of a value that was not measured in a row. Measured ones may be negative: an order where the
+/// error grew, the cost of collision where its difference of two times is noise.
+inline constexpr double not_measured = -HUGE_VAL;
+
+/// One choice. Lengths are in the object's units. Times are the least of several measurements (see
+/// least_cost()).
 struct StudyRow {
   std::string part;                           ///< field, rule, cost
   double resolution = 0;                      ///< voxels along an axis
   std::string method, stored, look_up, rule;  ///< stored: flat, compressed; empty: no field
-  double step = -1;                           ///< speed × dt as a part of the thickness
-  double build_seconds = -1, build_cpu_seconds = -1;
-  double bytes = -1;
-  double distance_error = -1;      ///< RMS, against the closest point of the triangles
-  double order = -1;               ///< the power of the cell with which distance_error fell
-  double distance_error_max = -1;  ///< of the same points
-  double normal_error = -1;        ///< RMS, in degrees
-  double penetration = -1;         ///< greatest depth below the triangles
-  double place_error = -1;         ///< RMS distance of bounces from where they should be
-  double angle_error = -1;         ///< RMS, in degrees, of the velocity after the bounce
-  double lost = -1;                ///< particles that went in, or on as if there were no object
-  double bounces = -1;             ///< out of so many
-  double ns = -1, cpu_ns = -1;     ///< per particle and step
-  double relative = -1;            ///< cost of collision as a part of that by a tree of boxes
+  double step = not_measured;                 ///< speed × dt as a part of the thickness
+  double build_seconds = not_measured, build_cpu_seconds = not_measured;
+  double bytes = not_measured;
+  double distance_error = not_measured;  ///< RMS, against the closest point of the triangles
+  double order = not_measured;           ///< the power of the cell with which distance_error fell
+  double distance_error_max = not_measured;  ///< of the same points
+  double normal_error = not_measured;        ///< RMS, in degrees
+  double penetration = not_measured;         ///< greatest depth below the triangles
+  double place_error = not_measured;         ///< RMS distance of bounces from where they should be
+  double angle_error = not_measured;         ///< RMS, in degrees, of the velocity after the bounce
+  double lost = not_measured;     ///< particles that went in, or on as if there were no object
+  double bounces = not_measured;  ///< out of so many
+  double ns = not_measured, cpu_ns = not_measured;  ///< per particle and step
+  double relative = not_measured;  ///< cost of collision as a part of that by a tree of boxes
   std::string note;                ///< why a choice is refused
 };
 
@@ -62,5 +67,7 @@ struct StudyOptions {
 
 /// Writes pictures to a folder, each with its data as CSV.
 void write_study(const std::string& folder, const std::vector<StudyRow>& rows);
+/// Their names in the folder.
+[[nodiscard]] std::vector<std::string> study_pictures();
 
 }  // namespace particles

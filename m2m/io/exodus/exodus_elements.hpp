@@ -34,8 +34,9 @@ namespace tess::m2m {
 
 /// True for surfaces, lines and points, which are skipped. `type`: in upper case.
 [[nodiscard]] constexpr bool exodus_has_no_volume(std::string_view type) {
-  constexpr std::array no_volume{"TRI",  "QUAD", "SHELL", "BAR",    "BEAM",   "TRUSS", "ROD",
-                                 "LINE", "EDGE", "CURVE", "SPHERE", "CIRCLE", "POINT", "NODE"};
+  constexpr std::array no_volume{"TRI",  "QUAD",   "SHELL",  "NSIDED", "BAR",  "BEAM",
+                                 "ROD",  "TRUSS",  "SPRING", "LINE",   "EDGE", "CURVE",
+                                 "NODE", "SPHERE", "CIRCLE", "POINT"};
   for (const std::string_view start : no_volume)
     if (type.starts_with(start)) return true;
   return false;

@@ -23,6 +23,7 @@ class ExodusFields : public FieldReader, private ExodusFile {
     set_name_length();
     const auto n_steps = static_cast<std::size_t>(count(EX_INQ_TIME, "number of time steps"));
     times_.resize(n_steps);
+    check_lengths("time_whole", {static_cast<std::int64_t>(n_steps)});
     if (n_steps > 0) check(ex_get_all_times(id_, times_.data()), "ex_get_all_times");
     add_fields(FieldPlace::vertices);
     add_fields(FieldPlace::tets);
@@ -119,6 +120,7 @@ class ExodusFields : public FieldReader, private ExodusFile {
     if (n_variables < variable || n_variables > most() / std::max<std::int64_t>(n_blocks, 1))
       damaged("number of variables", -1);
     std::vector<int> has(static_cast<std::size_t>(n_blocks) * at(n_variables));
+    check_lengths("elem_var_tab", {n_blocks, n_variables});
     if (!has.empty())
       check(ex_get_truth_table(id_, EX_ELEM_BLOCK, static_cast<int>(n_blocks), n_variables,
                                has.data()),
@@ -126,7 +128,7 @@ class ExodusFields : public FieldReader, private ExodusFile {
     std::vector<double> values;
     std::size_t row = 0;
     for (const std::int64_t id : ids_of(EX_ELEM_BLOCK, n_blocks)) {
-      const ElementBlock block = block_of(id);
+      const ElementBlock block = block_of(id, row + 1);
       const bool is_there = has[row++ * at(n_variables) + at(variable - 1)] != 0;
       if (block.n_elements == 0 || !exodus_volume(block.type, block.n_vertices_each)) continue;
       if (block.n_elements < 0 || block.n_elements > most()) damaged("number of elements", -1);

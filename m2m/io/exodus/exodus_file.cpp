@@ -9,6 +9,7 @@
 #include <cctype>
 #include <cstdio>
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <limits>
 #include <optional>
 #include <unistd.h>
@@ -47,7 +48,7 @@ ExodusFile::ExodusFile(const std::string& path, std::string_view bytes)
     : path_(path),
       most_(static_cast<std::int64_t>(
           std::min<std::size_t>(bytes.size(), std::numeric_limits<std::int64_t>::max() / 1000) *
-          1000)) {
+          (bytes.starts_with("CDF") ? 1 : 1000))) {
   const ExodusTurn turn;
   std::optional<Silence> silence;
   if (bytes.starts_with("CDF")) {
@@ -94,7 +95,12 @@ void ExodusFile::set_name_length() const {
 
 std::vector<std::int64_t> ExodusFile::ids_of(ex_entity_type type, std::int64_t n) const {
   std::vector<std::int64_t> ids(static_cast<std::size_t>(n));
-  if (n > 0) check(ex_get_ids(id_, type, ids.data()), "ex_get_ids");
+  if (n > 0) {
+    const std::string kind = type == EX_ELEM_BLOCK ? "eb" : type == EX_SIDE_SET ? "ss" : "ns";
+    check_lengths(kind + "_prop1", {n});
+    check_lengths(kind + "_status", {n});
+    check(ex_get_ids(id_, type, ids.data()), "ex_get_ids");
+  }
   std::vector<std::int64_t> sorted = ids;
   std::sort(sorted.begin(), sorted.end());
   if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end())
@@ -108,8 +114,14 @@ std::string ExodusFile::name_of(ex_entity_type type, std::int64_t id) const {
   return name.data();
 }
 
-ExodusFile::ElementBlock ExodusFile::block_of(std::int64_t id) const {
+ExodusFile::ElementBlock ExodusFile::block_of(std::int64_t id, std::size_t k) const {
   ex_block block{};
+  int at = 0;
+  std::size_t length = 0;  // the library copies a type of any length
+  if (nc_inq_varid(id_, fmt::format("connect{}", k).c_str(), &at) == NC_NOERR &&
+      nc_inq_attlen(id_, at, "elem_type", &length) == NC_NOERR && length > sizeof block.topology)
+    fail(ErrorCode::bad_file, path_, ": block ", id, " has an elem_type of ", length,
+         " characters; at most ", MAX_STR_LENGTH, " are possible: write the mesh again");
   block.id = id;
   block.type = EX_ELEM_BLOCK;
   check(ex_get_block_param(id_, &block), "ex_get_block_param");
@@ -123,16 +135,33 @@ ExodusFile::ElementBlock ExodusFile::block_of(std::int64_t id) const {
   return {id, std::move(type), block.num_entry, block.num_nodes_per_entry};
 }
 
-void ExodusFile::check_shape(const std::string& variable, std::int64_t n) const {
+std::optional<std::vector<std::int64_t>> ExodusFile::lengths_of(const std::string& variable) const {
   int at = 0, n_dimensions = 0;
   std::array<int, NC_MAX_VAR_DIMS> dimensions{};
-  std::size_t length = 0;
-  if (nc_inq_varid(id_, variable.c_str(), &at) != NC_NOERR)
-    return;  // in another layout, or missing
+  if (nc_inq_varid(id_, variable.c_str(), &at) != NC_NOERR) return std::nullopt;
   check(nc_inq_varndims(id_, at, &n_dimensions), "nc_inq_varndims");
   check(nc_inq_vardimid(id_, at, dimensions.data()), "nc_inq_vardimid");
-  if (n_dimensions == 2) check(nc_inq_dimlen(id_, dimensions[1], &length), "nc_inq_dimlen");
-  if (n_dimensions != 2 || length != static_cast<std::size_t>(n))
+  std::vector<std::int64_t> lengths;
+  for (std::size_t d = 0; d < static_cast<std::size_t>(n_dimensions); ++d) {
+    std::size_t length = 0;
+    check(nc_inq_dimlen(id_, dimensions[d], &length), "nc_inq_dimlen");
+    lengths.push_back(static_cast<std::int64_t>(length));
+  }
+  return lengths;
+}
+
+void ExodusFile::check_lengths(const std::string& variable,
+                               const std::vector<std::int64_t>& lengths) const {
+  const auto found = lengths_of(variable);
+  if (found && *found != lengths)
+    fail(ErrorCode::bad_file, path_, ": is truncated or damaged (variable ", variable,
+         " has the lengths [", fmt::to_string(fmt::join(*found, ", ")), "] instead of [",
+         fmt::to_string(fmt::join(lengths, ", ")), "]); write the mesh again");
+}
+
+void ExodusFile::check_shape(const std::string& variable, std::int64_t n) const {
+  const auto lengths = lengths_of(variable);
+  if (lengths && (lengths->size() != 2 || lengths->back() != n))
     fail(
         ErrorCode::bad_file, path_, ": variable ", variable, " is not ", n,
         " numbers per step, as ExodusII defines it; write each component as a variable of its own");

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <exodusII.h>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -29,8 +30,8 @@ class ExodusFile {
   [[nodiscard]] std::int64_t inquire(int what) const;
   /// A count that an honest file of this size can have; otherwise the file is damaged.
   [[nodiscard]] std::int64_t count(int what, const char* name) const;
-  /// No count in the file exceeds this. Compressed NetCDF-4 holds more than its size shows, but
-  /// never 1 000 times more.
+  /// No count in the file exceeds this: its size in NetCDF-3. Compressed NetCDF-4 holds more than
+  /// its size shows, but never 1 000 times more.
   [[nodiscard]] std::int64_t most() const noexcept { return most_; }
   /// Without this call the library cuts names to 32 characters.
   void set_name_length() const;
@@ -44,15 +45,22 @@ class ExodusFile {
     std::int64_t n_elements = 0;
     std::int64_t n_vertices_each = 0;
   };
-  [[nodiscard]] ElementBlock block_of(std::int64_t id) const;
+  /// `k`: its place in the file, from 1 on.
+  [[nodiscard]] ElementBlock block_of(std::int64_t id, std::size_t k) const;
   /// Refuses a variable that is not time steps × `n`, as ExodusII defines it. The library would
   /// read other numbers in their place.
   void check_shape(const std::string& variable, std::int64_t n) const;
+  /// Refuses a variable of other lengths. The library fills a buffer with all of a variable, also
+  /// if that is longer than the dimension that the buffer has its size from.
+  void check_lengths(const std::string& variable, const std::vector<std::int64_t>& lengths) const;
 
   const std::string& path_;
   int id_ = -1;
 
  private:
+  /// Of the dimensions of a variable. None if it is in another layout, or missing.
+  [[nodiscard]] std::optional<std::vector<std::int64_t>> lengths_of(
+      const std::string& variable) const;
   std::int64_t most_ = 0;
 };
 

@@ -9,6 +9,7 @@
 #include <array>
 #include <cstdint>
 #include <exodusII.h>
+#include <fmt/core.h>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -40,8 +41,9 @@ class ExodusReader : private ExodusFile {
     if (n > 0) read_points(mesh, n);
     set_name_length();
     ElementSplitter elements(mesh);
+    std::size_t k = 0;
     for (const std::int64_t block : ids_of(EX_ELEM_BLOCK, n_blocks))
-      read_block(mesh, elements, block);
+      read_block(mesh, elements, block, ++k);
     elements.finish();
     read_sets(mesh, elements);
     return mesh;
@@ -58,8 +60,9 @@ class ExodusReader : private ExodusFile {
       mesh.points[i] = {axes[0][i], axes[1][i], axes[2][i]};
   }
 
-  void read_block(TetMesh& mesh, ElementSplitter& elements, std::int64_t id) {
-    const ElementBlock block = block_of(id);
+  /// The library numbers the variables of blocks, and of sets, by their place `k`, from 1 on.
+  void read_block(TetMesh& mesh, ElementSplitter& elements, std::int64_t id, std::size_t k) {
+    const ElementBlock block = block_of(id, k);
     if (block.n_elements == 0) return;
     if (block.n_elements < 0 || block.n_elements > most() - n_elements_)
       damaged("number of elements", -1);
@@ -76,6 +79,7 @@ class ExodusReader : private ExodusFile {
     const std::size_t n_tets_before = mesh.n_tets();
     const auto n = static_cast<std::size_t>(block.n_elements);
     const std::size_t n_each = n_vertices(*element);
+    check_lengths(fmt::format("connect{}", k), {block.n_elements, block.n_vertices_each});
     std::vector<std::int64_t> vertices(n_each * n);
     check(ex_get_n_conn(id_, EX_ELEM_BLOCK, id, 1, block.n_elements, vertices.data(), nullptr,
                         nullptr),
@@ -119,9 +123,16 @@ class ExodusReader : private ExodusFile {
   void read_sets(TetMesh& mesh, const ElementSplitter& elements) const {
     const std::int64_t n_side_sets = count(EX_INQ_SIDE_SETS, "number of side sets");
     const std::int64_t n_node_sets = count(EX_INQ_NODE_SETS, "number of node sets");
+    std::size_t k = 0;
     for (const std::int64_t id : ids_of(EX_SIDE_SET, n_side_sets))
-      read_side_set(mesh, elements, id);
-    for (const std::int64_t id : ids_of(EX_NODE_SET, n_node_sets)) read_node_set(mesh, id);
+      read_side_set(mesh, elements, id, ++k);
+    k = 0;
+    for (const std::int64_t id : ids_of(EX_NODE_SET, n_node_sets)) read_node_set(mesh, id, ++k);
+  }
+
+  /// Checks the length of a list of the k-th set.
+  void check_list(const char* stem, std::size_t k, std::size_t n) const {
+    if (n > 0) check_lengths(fmt::format("{}{}", stem, k), {static_cast<std::int64_t>(n)});
   }
 
   /// The number of entries and of distribution factors of a set.
@@ -133,8 +144,9 @@ class ExodusReader : private ExodusFile {
     return {static_cast<std::size_t>(n), static_cast<std::size_t>(n_factors)};
   }
 
-  [[nodiscard]] std::vector<double> factors_of(ex_entity_type type, std::int64_t id,
+  [[nodiscard]] std::vector<double> factors_of(ex_entity_type type, std::int64_t id, std::size_t k,
                                                std::size_t n) const {
+    check_list(type == EX_SIDE_SET ? "dist_fact_ss" : "dist_fact_ns", k, n);
     std::vector<double> factors(n);
     if (n > 0) check(ex_get_set_dist_fact(id_, type, id, factors.data()), "ex_get_set_dist_fact");
     return factors;
@@ -143,8 +155,11 @@ class ExodusReader : private ExodusFile {
   /// Leaves out the sides of skipped elements, and replaces those of split ones by the faces of
   /// their tetrahedra. The factors of such a set are left out too, because the file does not say
   /// which factor belongs to which side.
-  void read_side_set(TetMesh& mesh, const ElementSplitter& volumes, std::int64_t id) const {
+  void read_side_set(TetMesh& mesh, const ElementSplitter& volumes, std::int64_t id,
+                     std::size_t k) const {
     const auto [n, n_factors] = size_of(EX_SIDE_SET, id);
+    check_list("elem_ss", k, n);
+    check_list("side_ss", k, n);
     std::vector<std::int64_t> elements(n), sides(n);
     if (n > 0) check(ex_get_set(id_, EX_SIDE_SET, id, elements.data(), sides.data()), "ex_get_set");
     SideSet set{id, name_of(EX_SIDE_SET, id)};
@@ -159,15 +174,16 @@ class ExodusReader : private ExodusFile {
       volumes.append_side(element, sides[i], set.entries);
     }
     if (set.entries.size() == n && mesh.split.empty())
-      set.factors = factors_of(EX_SIDE_SET, id, n_factors);
+      set.factors = factors_of(EX_SIDE_SET, id, k, n_factors);
     mesh.side_sets.push_back(std::move(set));
   }
 
-  void read_node_set(TetMesh& mesh, std::int64_t id) const {
+  void read_node_set(TetMesh& mesh, std::int64_t id, std::size_t k) const {
     const auto [n, n_factors] = size_of(EX_NODE_SET, id);
+    check_list("node_ns", k, n);
     std::vector<std::int64_t> vertices(n);
     if (n > 0) check(ex_get_set(id_, EX_NODE_SET, id, vertices.data(), nullptr), "ex_get_set");
-    NodeSet set{id, name_of(EX_NODE_SET, id), {}, factors_of(EX_NODE_SET, id, n_factors)};
+    NodeSet set{id, name_of(EX_NODE_SET, id), {}, factors_of(EX_NODE_SET, id, k, n_factors)};
     for (const std::int64_t vertex : vertices) {
       if (vertex < 1 || vertex > static_cast<std::int64_t>(mesh.n_points())) {
         fail(ErrorCode::bad_mesh, path_, ": node set ", id, " names vertex ", vertex, " of ",

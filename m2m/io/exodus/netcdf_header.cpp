@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
+#include <set>
 #include <utility>
 
 namespace tess::m2m {
@@ -23,9 +25,13 @@ class HeaderReader {
       damaged("unknown NetCDF version ", version_);
     at_ = 4;
     n_records_ = count();
-    if (n_records_ == (wide() ? UINT64_MAX : UINT32_MAX))
-      n_records_ = 0;  // the file was not closed: the number of records is unknown
+    const bool is_unknown = n_records_ == (wide() ? UINT64_MAX : UINT32_MAX);
+    if (is_unknown) n_records_ = 0;
     dimensions();
+    // libexodusII takes it as a number.
+    for (const NetcdfDimension& dimension : dimensions_)
+      if (is_unknown && dimension.length == 0)
+        damaged("the number of records is unknown, since the file was not closed");
     attributes(true);
     variables();
     records_inside();
@@ -92,10 +98,12 @@ class HeaderReader {
 
   void dimensions() {
     const std::uint64_t n = list(10, 8);
+    std::set<std::string> names;  // libexodusII finds dimensions by name
     for (std::uint64_t i = 0; i < n; ++i) {
       std::string called = name();
       const std::uint64_t length = count();
       if (length > UINT64_MAX / 2) damaged("dimension ", called, " of length ", length);
+      if (!names.insert(called).second) damaged("two dimensions are called ", called);
       dimensions_.push_back({std::move(called), length});
     }
   }
@@ -115,6 +123,13 @@ class HeaderReader {
         if (global && called == scalar && length != 1)
           damaged("attribute ", called, " has ", length, " values");
       }
+      if (!global && called == "elem_type") {
+        if (length > 33)  // libexodusII copies it into a buffer of this size
+          damaged("attribute ", called, " has ", length, " characters; at most 32 are possible");
+        element_type_ = bytes_.substr(at_, length);
+        for (char& c : element_type_)
+          c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+      }
       skip(length * size);
     }
   }
@@ -133,6 +148,7 @@ class HeaderReader {
           damaged("variable ", called, " has dimension ", id, " of ", dimensions_.size());
         shape.push_back(id);
       }
+      element_type_.clear();
       attributes(false);
       const std::uint64_t type = word();
       const std::uint64_t size = size_of_type(type);
@@ -205,6 +221,8 @@ class HeaderReader {
     } else if (all.starts_with("connect")) {
       const std::string block(all.substr(7));
       wanted = {"num_el_in_blk" + block, "num_nod_per_el" + block};
+      if (shape.size() == 1 && element_type_.starts_with("NSIDED"))
+        wanted.erase(wanted.begin());  // the vertices of all polygons
     } else if (all == "time_whole") {
       wanted = {"time_step"};
     } else if (all == "vals_nod_var") {
@@ -233,6 +251,7 @@ class HeaderReader {
   std::size_t at_ = 0;
   unsigned version_ = 0;
   std::uint64_t n_records_ = 0;
+  std::string element_type_;  // of the present variable, in upper case
   std::vector<NetcdfDimension> dimensions_;
   std::vector<NetcdfVariable> variables_;
 };

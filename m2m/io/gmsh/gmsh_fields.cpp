@@ -112,8 +112,9 @@ class GmshFields : public FieldReader {
   /// Reads the tags of a section, and skips its values.
   void list(GmshScanner& file, FieldPlace place) {
     std::string name = "unnamed";
-    const auto n_names = file.number_as_text<std::uint32_t>();
-    for (std::uint32_t i = 0; i < n_names; ++i) {
+    const std::size_t n_names =
+        file.checked_count(file.number_as_text<std::uint32_t>(), "names", 2);
+    for (std::size_t i = 0; i < n_names; ++i) {
       const std::string_view text = file.quoted();
       if (i == 0) name = clean_name(text);
     }
@@ -188,6 +189,7 @@ class GmshFields : public FieldReader {
       }
       has[row] = true;
     }
+    if (!binary_) file.close(end_of(field.place));  // otherwise it has more rows than announced
   }
 
   const std::string& path_;

@@ -10,6 +10,7 @@
 #include <cctype>
 #include <cstdint>
 #include <exodusII.h>
+#include <set>
 #include <vector>
 
 namespace tess::m2m {
@@ -41,6 +42,7 @@ class ExodusRanges final : public MeshRanges {
     if (n_points > most || n_blocks > most) return false;
     std::vector<std::int64_t> ids(static_cast<std::size_t>(n_blocks));
     if (n_blocks > 0) check(ex_get_ids(id_, EX_ELEM_BLOCK, ids.data()), "ex_get_ids");
+    if (std::set(ids.begin(), ids.end()).size() != ids.size()) return false;
     for (const std::int64_t id : ids) {
       ex_block block{};
       block.id = id;

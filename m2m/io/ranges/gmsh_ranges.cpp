@@ -124,13 +124,16 @@ class GmshRanges final : public MeshRanges {
 
   bool elements() {
     const auto n_blocks = at_.count<std::uint64_t>("blocks of elements", 20);
-    at_.skip<std::uint64_t>(3);  // elements, least and greatest tag
+    const auto n = at_.number<std::uint64_t>();
+    at_.skip<std::uint64_t>(2);  // least and greatest tag
+    std::uint64_t n_found = 0;
     for (std::size_t block = 0; block < n_blocks; ++block) {
       at_.skip<int>(2);  // dimension and entity
       const int number = at_.number<int>();
       const GmshElement* const type = gmsh_element(number);
       if (type == nullptr || (type->dimension == 3 && number != 4)) return false;
       const auto m = at_.count<std::uint64_t>("elements in a block", 16);
+      n_found += m;
       if (number != 4) {
         n_skipped_[static_cast<std::size_t>(number)] += m;
       } else if (m > 0) {
@@ -139,7 +142,7 @@ class GmshRanges final : public MeshRanges {
       }
       at_.skip<std::uint64_t>((static_cast<std::size_t>(type->n_vertices) + 1) * m);
     }
-    return true;
+    return n_found == n;
   }
 
   [[nodiscard]] bool tags_follow(GlobalId first, GlobalId n) const {

@@ -21,6 +21,24 @@ std::string printable(std::string text) {
   return text;
 }
 
+/// Behind blanks, comments and the marks of CDATA sections.
+const char* next_text(const char* at, const char* end) {
+  while (at != end) {
+    const std::string_view rest(at, static_cast<std::size_t>(end - at));
+    if (*at == ' ' || *at == '\n' || *at == '\r' || *at == '\t')
+      ++at;
+    else if (rest.starts_with("<!--"))
+      at += std::min(rest.find("-->"), rest.size() - 3) + 3;
+    else if (rest.starts_with("<![CDATA["))
+      at += 9;
+    else if (rest.starts_with("]]>"))
+      at += 3;
+    else
+      break;
+  }
+  return at;
+}
+
 /// The numbers of type `Stored` in `bytes`, as numbers of type T.
 template <class T, class Stored>
 std::vector<T> converted(const std::string& bytes, bool big_endian) {
@@ -141,9 +159,7 @@ void VtuFile::read_array(const XmlTag& tag, Scan& scan) const {
     scan.array = tag.kind == XmlTag::Kind::open ? &scan.section->back() : nullptr;
     scan.text_begin = scan.bytes.data() + tag.end;
   } else if (scan.array != nullptr) {
-    // The numbers end with the first tag behind them, such as an InformationKey.
-    const std::string_view text(scan.text_begin, tag.text_before.data() + tag.text_before.size());
-    scan.array->text = text.substr(0, text.find('<'));
+    scan.array->text = {scan.text_begin, tag.text_before.data() + tag.text_before.size()};
     scan.array = nullptr;
   }
 }
@@ -177,8 +193,9 @@ std::vector<T> VtuFile::numbers_of_text(const VtuArray& array) const {
   const char* at = array.text.data();
   const char* const end = at + array.text.size();
   while (true) {
-    while (at != end && (*at == ' ' || *at == '\n' || *at == '\r' || *at == '\t')) ++at;
-    if (at == end) return out;
+    at = next_text(at, end);
+    // The numbers end with the first tag behind them, such as an InformationKey.
+    if (at == end || *at == '<') return out;
     T value{};
     const char* const last = read_text_number(at, end, value);
     if (last == at) damaged("array '", printable(array.name), "' has text that is no number");

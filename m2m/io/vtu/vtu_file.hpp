@@ -20,7 +20,7 @@ struct VtuArray {
   std::string name, type, format;
   std::size_t n_components = 1;
   std::size_t offset = 0;   ///< in the appended data
-  std::string_view text{};  ///< ascii or base64
+  std::string_view text{};  ///< ascii or base64, and what stands behind it
 };
 
 struct VtuPiece {

@@ -18,15 +18,17 @@ constexpr std::size_t most_points = std::numeric_limits<VertexId>::max();
 constexpr std::int64_t ghost = -1;
 
 /// The types of the cells of a piece. Ghost cells (vtkDataSetAttributes: DUPLICATECELL,
-/// REFINEDCELL, HIDDENCELL) are no part of the mesh; they would count twice.
+/// REFINEDCELL, HIDDENCELL; in older files a level above 0) are no part of the mesh; they would
+/// count twice.
 std::vector<std::int64_t> types_of(const VtuFile& file, const VtuPiece& piece) {
   std::vector<std::int64_t> types = file.integers(file.array(piece.cells, "types"), piece.n_cells);
-  const auto marks = std::find_if(piece.cell_data.begin(), piece.cell_data.end(),
-                                  [](const VtuArray& a) { return a.name == "vtkGhostType"; });
+  auto marks = std::ranges::find(piece.cell_data, "vtkGhostType", &VtuArray::name);
+  const bool has_levels = marks == piece.cell_data.end();
+  if (has_levels) marks = std::ranges::find(piece.cell_data, "vtkGhostLevels", &VtuArray::name);
   if (marks == piece.cell_data.end() || piece.n_cells == 0) return types;
   const std::vector<std::int64_t> bits = file.integers(*marks, piece.n_cells);
   for (std::size_t c = 0; c < types.size(); ++c)
-    if ((bits[c] & (1 | 8 | 32)) != 0) types[c] = ghost;
+    if (has_levels ? bits[c] > 0 : (bits[c] & (1 | 8 | 32)) != 0) types[c] = ghost;
   return types;
 }
 
@@ -156,6 +158,8 @@ class VtuFields : public FieldReader {
     const FileField& wanted = fields_[field];
     const bool nodal = wanted.place == FieldPlace::vertices;
     const std::size_t n_components = wanted.n_components;
+    if (n_components < 1 || n_components > 1000)
+      file_.damaged("'", wanted.name, "' has ", n_components, " components");
     std::vector<double> values;
     std::size_t n_points = 0;
     for (const VtuPiece& piece : file_.pieces()) {
@@ -185,8 +189,6 @@ class VtuFields : public FieldReader {
  private:
   void list(const VtuArray& array, FieldPlace place) {
     if (array.name.empty() || array.type == "String") return;
-    if (array.n_components < 1 || array.n_components > 1000)
-      file_.damaged("'", array.name, "' has ", array.n_components, " components");
     fields_.push_back({array.name, place, array.n_components});
   }
 

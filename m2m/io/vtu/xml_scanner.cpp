@@ -86,7 +86,9 @@ std::optional<XmlTag> XmlScanner::next() {
     const std::string_view rest = text_.substr(begin);
     // Comments and declarations.
     if (rest.starts_with("<!--") || rest.starts_with("<?") || rest.starts_with("<!")) {
-      const std::string_view end = rest.starts_with("<!--") ? "-->" : ">";
+      const std::string_view end = rest.starts_with("<!--")        ? "-->"
+                                   : rest.starts_with("<![CDATA[") ? "]]>"
+                                                                   : ">";
       const std::size_t close = rest.find(end);
       if (close == std::string_view::npos) return std::nullopt;
       at_ = begin + close + end.size();

@@ -93,6 +93,10 @@ class SectionListsOf final : public SectionLists {
     using Base = TypedMessage<TokenCall, AnyChare<Index>, std::tuple<SectionToken>>;
     using Base::Base;
     static void invoke(Element& element, ElementMessage<Index>& message);
+    static std::int64_t priority_of(const Envelope& envelope) {
+      return std::get<0>(static_cast<const TokenCall&>(envelope).arguments)
+          .call.numbered.priority();
+    }
     static inline const ElementAction<Index> entry{std::type_identity<TokenCall>{},
                                                    &TokenCall::invoke, nullptr, Traffic::control};
   };

@@ -250,8 +250,8 @@ void ReductionTree::check_newcomer(const Gathering& sum) const {
              newcomer.element, " was created after broadcast ", newcomer.created_after,
              " and contributes to ", words_.name, " ", next_complete_, ", to which broadcast ",
              sum.cause.led_by,
-             " led: rounds overlap; insert elements while no round is under way, or await the "
-             "result of a round before the next broadcast");
+             " led: rounds overlap, or it contributes without having received the broadcast; "
+             "insert elements while no round is under way, or let them send a value to a chare");
 }
 
 void ReductionTree::complete_if_whole() {

@@ -12,7 +12,7 @@
 namespace tess::detail {
 namespace {
 
-constexpr std::uint32_t most_numbers = 0x7fffffff;  // 31 bits travel between processes
+constexpr std::uint32_t most_numbers = Envelope::most_trace;
 
 /// The number of an arrow, unique in the job.
 std::uint64_t arrow(PeId source, std::uint32_t number) {

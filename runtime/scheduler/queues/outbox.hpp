@@ -61,6 +61,8 @@ struct PackedHeader {
   static constexpr unsigned n_flags = 3;
 };
 static_assert(Bitwise<PackedFrom> && Bitwise<PackedHeader>);
+static_assert(Envelope::most_trace << PackedHeader::n_flags >> PackedHeader::n_flags ==
+              Envelope::most_trace);
 
 /// The credit that so many bytes take.
 [[nodiscard]] constexpr std::uint64_t credits(std::uint64_t n_bytes) {

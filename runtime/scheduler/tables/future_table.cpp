@@ -2,6 +2,8 @@
 
 #include "runtime/core/check.hpp"
 
+#include <algorithm>
+
 namespace tess::detail {
 
 FutureTable::Place* FutureTable::place_of(std::uint64_t id) {
@@ -64,9 +66,9 @@ void FutureTable::begin_behind(std::uint32_t n_places) {
     if (const Place& place = places_[at]; place.future != nullptr)
       before_restart_.emplace_back(std::uint64_t{place.n_used} << 32U | (first_ + at),
                                    place.future);
+  first_ = std::max(n_places, this->n_places());
   places_.assign(1, {});
   unused_.clear();
-  first_ = n_places;
 }
 
 }  // namespace tess::detail

@@ -250,7 +250,10 @@ TEST_CASE("a saved snapshot has the index of each element and its measured load"
   s.strategies = {"greedy"};
   s.snapshots = scratch.path.string();
   s.snapshot_format = "json";
+  (void)sweep_on("pes=4,cost=1us", s);
+  REQUIRE(std::filesystem::exists(scratch.path / "linear-4-greedy" / "data.3.json"));
   (void)sweep_on("pes=2,cost=1us", s);
+  CHECK_FALSE(std::filesystem::exists(scratch.path / "linear-4-greedy" / "data.3.json"));
   double first = 0;
   for (int pe = 0; pe < 2; ++pe) {
     std::ifstream file(scratch.path / "linear-4-greedy" / ("data." + std::to_string(pe) + ".json"));

@@ -67,6 +67,7 @@ TEST_CASE("pairs that no compute sees are found", "[leanmd]") {
   INFO(outcome.error);
   CHECK(outcome.wrong_forces > 0);
   CHECK(outcome.error.find("differ from those of all pairs") != std::string::npos);
+  CHECK(outcome.is_wrong);
 }
 
 TEST_CASE("a run that cannot continue says why, and ends early", "[leanmd]") {
@@ -76,6 +77,7 @@ TEST_CASE("a run that cannot continue says why, and ends early", "[leanmd]") {
   for (const std::uint64_t seed : {1U, 2U, 3U}) {
     const Outcome outcome = run(options, 4, seed);
     CHECK(outcome.error.find("step 1, atom ") == 0);
+    CHECK_FALSE(outcome.is_wrong);
     CHECK(outcome.energies.size() == 1);
     CHECK(outcome.error == run(options, 1, 0).error);
   }
@@ -102,6 +104,24 @@ TEST_CASE("the energy drift is of second order in the time step", "[leanmd]") {
   std::vector<StudyRow> rows;
   REQUIRE(tess::run(setup, [&]() -> tess::Task { return study(options, start, rows); }) == 0);
   REQUIRE(rows.size() == 5);
-  CHECK(fitted_order(rows) == Approx(2).margin(0.1));
+  CHECK(fitted_order(rows).value() == Approx(2).margin(0.1));
   CHECK(study_table(rows).find("fitted order") != std::string::npos);
+}
+
+TEST_CASE("a study marks wrong results, and has no order without two rows", "[leanmd]") {
+  Options options = small({5, 5, 5});
+  options.problem.cutoff = 3;
+  options.problem.skin = -2;  // so a cell of edge 1.3 reaches only the next one
+  tess::Setup setup = tess::test::adversarial(3, 4);
+  std::vector<StudyRow> rows;
+  std::string json;
+  REQUIRE(tess::run(setup, [&]() -> tess::Task {
+            co_await study(options, start, rows);
+            json = study_json(rows);
+          }) == 0);
+  REQUIRE(rows.size() == 5);
+  for (const StudyRow& row : rows) CHECK(row.is_wrong);
+  CHECK_FALSE(fitted_order(rows));
+  CHECK(study_table(rows).find("fitted order -;") != std::string::npos);
+  CHECK(json.find("\"fitted_order\": null") != std::string::npos);
 }

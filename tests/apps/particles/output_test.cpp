@@ -3,7 +3,9 @@
 #include "apps/particles/output/picture.hpp"
 #include "apps/plot/contour.hpp"
 #include "tests/apps/particles/run_scene.hpp"
+#include "tests/support/scratch.hpp"
 
+#include <algorithm>
 #include <sstream>
 
 using namespace particles;
@@ -113,6 +115,73 @@ TEST_CASE("a picture of paths has axes, times, and the outline of what moves", "
   const std::string twice = picture("[0, 0, 0]", R"({"axis": ["z", "x"]})");
   CHECK(count(twice, "<clipPath") == 2);
   CHECK(twice.find(">z<") != std::string::npos);
+}
+
+TEST_CASE("particles that start at one point have a picture with distinct labels", "[particles]") {
+  const Scene scene =
+      parse_scene(R"({"dt": 1, "steps": 2, "emitters": [{"count": 1, "sphere": {"radius": 0}}]})",
+                  "scene.json");
+  const auto labels = [&](double start, double second, double step) {
+    std::vector<Snapshot> snapshots;
+    for (int i = 0; i < 3; ++i) {
+      const double x = start + (i == 0 ? 0 : i * step);
+      snapshots.push_back({i, {{0, {x, 0, 0}, {}}, {1, {x + second, 0, 0}, {}}}});
+    }
+    const std::string svg = paths_svg(scene, snapshots);
+    CHECK(svg.find("inf") == std::string::npos);
+    CHECK(svg.find("nan") == std::string::npos);
+    const std::string begin = "text-anchor=\"middle\">";
+    std::vector<std::string> found;  // along x, and the axis's name
+    for (std::size_t at = 0; (at = svg.find(begin, at)) != std::string::npos;) {
+      at += begin.size();
+      found.push_back(svg.substr(at, svg.find('<', at) - at));
+    }
+    return found;
+  };
+  for (const double start : {0.0, 5.0, 2e6, 1e7, -1e15, 1e150})
+    for (const double second : {0.0, 1.0})
+      for (const double step : {0.0, 0.5}) {
+        CAPTURE(start, second, step);
+        std::vector<std::string> found = labels(start, second, step);
+        CHECK(found.size() >= 4);
+        CHECK(found.size() <= 14);
+        std::ranges::sort(found);
+        CHECK(std::ranges::adjacent_find(found) == found.end());
+      }
+  // The paths, where they begin at one point.
+  const std::vector<std::string> moved = labels(5, 0, 0.5);
+  CHECK(std::ranges::count(moved, "6") == 1);
+  (void)labels(0, 0, HUGE_VAL);  // a place that is not finite is left out
+}
+
+TEST_CASE("a run replaces none of the files that it reads or writes", "[particles]") {
+  const tess::test::Scratch scratch;
+  Scene scene = with_object(R"({"shape": {"box": {"half": [1, 1, 1]}}})",
+                            R"({"slice": {}, "trajectories": 20})");
+  scene.outputs.fields = true;
+  const std::string out = scratch.path("out");
+  Options options;
+  options.out = out;
+  options.study = true;
+  const auto refusal = [&](const std::string& trace = {}) {
+    return tess::test::message_of([&] { prepare_files(scene, options, trace); });
+  };
+  for (const char* file :
+       {"field_0.dnf", "field.svg", "paths.svg", "trajectories.pvd",
+        "trajectories/step_000000020.vtp", "study_distance.svg", "study_step.csv"}) {
+    CAPTURE(file);
+    scene.objects[0].field = out + "/./" + file;
+    CHECK_THAT(refusal(), Catch::Contains("would overwrite objects[0].field"));
+    scene.objects[0].field.clear();
+    options.json = out + "/" + file;
+    CHECK_THAT(refusal(), Catch::Contains("would overwrite --json"));
+    options.json.clear();
+    CHECK_THAT(refusal(out + "/" + file), Catch::Contains("would overwrite --trace"));
+  }
+  scene.objects[0].field = options.json = scratch.path("field.dnf");
+  CHECK_THAT(refusal(), Catch::Contains("would overwrite objects[0].field"));
+  options.json.clear();
+  prepare_files(scene, options, scratch.path("trace.json"));
 }
 
 TEST_CASE("the shadow of a torus has its hole", "[particles]") {

@@ -136,6 +136,17 @@ TEST_CASE("the study finds the orders of the look-ups, and no particle lost wher
   CHECK(static_cast<std::size_t>(std::count(table.begin(), table.end(), '\n')) == rows.size() + 3);
 }
 
+TEST_CASE("the study shows an order that is negative, and a dash for none", "[particles][study]") {
+  std::vector<StudyRow> rows(2);
+  for (StudyRow& row : rows) row.part = "field";
+  rows[1].order = -0.25;
+  rows[1].relative = -0.0125;
+  const std::string table = study_table(rows);
+  CHECK(table.find(" -0.25 ") != std::string::npos);
+  CHECK(table.find(" -0.0125\n") != std::string::npos);
+  CHECK(table.find(" -\n") != std::string::npos);
+}
+
 TEST_CASE("costs are the least of five runs, and CPU time does not count waiting",
           "[particles][study]") {
   int n_runs = 0, n_prepared = 0;

@@ -2,14 +2,17 @@
 // well-formed and has a curve per series, for any name of a series.
 #include "apps/plot/chart.hpp"
 
+#include "apps/plot/file_names.hpp"
 #include "apps/plot/quoting.hpp"
 #include "apps/plot/timeline.hpp"
+#include "apps/plot/write_file.hpp"
 #include "tests/apps/xml.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/scratch.hpp"
 
 #include <algorithm>
 #include <cstdlib>
+#include <filesystem>
 #include <limits>
 
 using namespace plot;
@@ -124,6 +127,23 @@ TEST_CASE("a logarithmic axis is labelled at its ends, too", "[apps][plot][.][gn
   CHECK(n_texts(elements, "0.25") == 1);
 }
 
+TEST_CASE("no two labels of an axis are equal, and whole numbers have all their digits",
+          "[apps][plot][.][gnuplot]") {
+  const Scratch scratch;
+  Chart chart{.title = "digits", .x_log = true};
+  chart.x_ticks = {1024, 2048};
+  chart.series.push_back({"flat", {{1024, 10.01}, {2048, 10.055}}});
+  REQUIRE(write_svg(scratch.path("a.svg"), chart));
+  std::vector<std::string> labels;
+  for (const XmlElement& e : read_xml(slurp(scratch.path("a.svg"))))
+    if (e.name == "text" && e.text.find_first_of("0123456789") != std::string::npos)
+      labels.push_back(e.text);
+  CHECK(std::count(labels.begin(), labels.end(), "1024") == 1);
+  CHECK(std::count(labels.begin(), labels.end(), "2048") == 1);
+  std::sort(labels.begin(), labels.end());
+  CHECK(std::adjacent_find(labels.begin(), labels.end()) == labels.end());
+}
+
 TEST_CASE("lines without marks differ where colours repeat", "[apps][plot][.][gnuplot]") {
   const Scratch scratch;
   Chart chart{.title = "strategies"};
@@ -147,6 +167,22 @@ TEST_CASE("the error names a path that cannot be written", "[apps][plot]") {
   CHECK_THAT(message_of([&] { write_svg(scratch.path("a.png"), two_series()); }),
              Catch::Contains("a.png: a picture's name must end in .svg"));
   CHECK(scratch.n_files() == 0);
+}
+
+TEST_CASE("neither a picture nor its data may be another file of the run", "[apps][plot]") {
+  const Scratch scratch;
+  for (const char* file : {"a.svg", "a.csv"}) {
+    FileNames names;
+    names.writes("--json", scratch.path(file));
+    CHECK_THAT(message_of([&] { names.writes_picture("--plot", scratch.path("a.svg")); }),
+               Catch::Contains(std::string(file) + " would overwrite --json"));
+    names.writes_picture("--plot", scratch.path("b.svg"));
+    names.writes_picture("--plot", "");
+  }
+  std::filesystem::create_directory(scratch.path("c.csv"));
+  CHECK_THAT(message_of([&] { require_picture("--plot", scratch.path("c.svg")); }),
+             Catch::Contains("c.csv: cannot be written: is a directory"));
+  require_picture("--plot", scratch.path("d.svg"));
 }
 
 TEST_CASE("without gnuplot the data is written, but no picture", "[apps][plot]") {

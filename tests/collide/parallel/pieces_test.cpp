@@ -303,6 +303,10 @@ TEST_CASE("capsules are none or one per object, and pieces have a length",
   const std::vector<Item> items{{boxes[0], {}}};
   CHECK_THROWS_WITH(list.append(items, capsules, PeId{0}),
                     Catch::Contains("2 capsules were submitted with 1 objects"));
+  CHECK_THROWS_WITH(list.append(Objects{{}, {}, {}, {}, capsules}, PeId{0}),
+                    Catch::Contains("2 capsules were submitted with 0 objects"));
+  CHECK_THROWS_WITH(list.append(std::span<const Item>(), capsules, PeId{0}),
+                    Catch::Contains("2 capsules were submitted with 0 objects"));
   CHECK(list.size() == 0);
   for (const double length : {-1.0, std::numeric_limits<double>::quiet_NaN()})
     CHECK_THROWS_WITH(make_collider({.piece_length = length}),

@@ -126,6 +126,40 @@ TEST_CASE("objects that are a little too large for the voxels have no level of t
     }
 }
 
+TEST_CASE("objects of the largest extents have voxels", "[collide][parallel]") {
+  constexpr double far = 0x1.8p1023;
+  const std::vector<Aabb> boxes{{{0, 0, 0}, {1, 1, 1}}, {{0, 0, 0}, {far, 1, 1}}};
+  ObjectList objects;
+  objects.append(Objects{.boxes = boxes}, PeId{0});
+  for (const double size : {5e307, 0.}) {
+    CAPTURE(size);
+    const Plan plan =
+        make_plan(Summary(objects, 0, 2), 1,
+                  {.size = {size, size, size}, .rules = {.within_model = WithinModel::test}}, 1);
+    for (Level level = 0; level < most_levels; ++level)
+      if (plan.has(level)) CHECK_NOTHROW(plan.grid(level).cells_of(objects.bounds()));
+    CHECK(plan.has(plan.level_of(far)));
+  }
+}
+
+TEST_CASE("a sample has the models of its boxes", "[collide][parallel]") {
+  Summary all;
+  for (const std::int32_t pe : {2, 0, 1}) {
+    std::vector<Item> items;
+    for (std::uint32_t i = 0; i < 20; ++i) {
+      const auto at = static_cast<double>(100 * pe + 3 * static_cast<int>(i));
+      items.push_back({{{at, 0, 0}, {at, 1, 1}}, {{}, {}, static_cast<ModelId>(at)}});
+    }
+    ObjectList objects;
+    objects.append(items, {}, PeId{pe});
+    all = JoinSummaries{}.combine(std::move(all), Summary(objects, pe, 7));
+  }
+  all = JoinSummaries{}.finish(std::move(all));
+  REQUIRE(all.sample.size() == 21);
+  REQUIRE(all.sample_models.size() == 21);
+  for (std::size_t i = 0; i < 21; ++i) CHECK(all.sample[i].lo[0] == all.sample_models[i]);
+}
+
 // With the same places on every PE, half of the sample were the first objects.
 TEST_CASE("few samples of many PEs are from everywhere in their lists", "[collide][parallel]") {
   std::vector<Aabb> boxes(8);  // one large box, and points

@@ -41,13 +41,14 @@ struct Moving {
   bool identical = false;  ///< all boxes are
   bool with_capsules = false;
   double scale = 1;
+  double voxel_size = 0;
   PairRules rules{};
   std::optional<ModelId> only{};
 
   template <class Ar>
   void serialize(Ar& ar) {
     ar(seed, n_clients, n_boxes, n_models, drift, jump, birth, other_numbers, other_models,
-       identical, with_capsules, scale, rules, only);
+       identical, with_capsules, scale, voxel_size, rules, only);
   }
 };
 
@@ -173,7 +174,8 @@ Task end(const Movers& movers, Outcome& outcome) {
 }
 
 ColliderOptions with_slack(const Moving& scene) {
-  return {.rules = scene.rules, .slack = slack * scene.scale};
+  const double size = scene.voxel_size;
+  return {.size = {size, size, size}, .rules = scene.rules, .slack = slack * scene.scale};
 }
 
 Task collide_steps(const Moving& scene, std::int32_t n_steps, Outcome& outcome) {
@@ -375,10 +377,19 @@ TEST_CASE("larger boxes with by far too many pairs are not searched", "[collide]
     }
   };
   sample(0.02);  // of a box 64 others, within twice its extent on each axis
-  CHECK_FALSE(are_far_too_many(larger, Touching::counts, 4));
+  const PairRules all{Touching::counts, WithinModel::test};
+  CHECK_FALSE(are_far_too_many(larger, all, 4));
   sample(0.1);  // 8 000
-  CHECK(are_far_too_many(larger, Touching::counts, 4));
-  CHECK_FALSE(are_far_too_many(Summary(), Touching::counts, 4));
+  CHECK(are_far_too_many(larger, all, 4));
+  CHECK_FALSE(are_far_too_many(Summary(), all, 4));
+  // Pairs within a model are not kept.
+  const PairRules across{Touching::counts, WithinModel::skip};
+  larger.sample_models.assign(larger.sample.size(), 7);
+  larger.sample_models.back() = 8;
+  CHECK(are_far_too_many(larger, all, 4));
+  CHECK_FALSE(are_far_too_many(larger, across, 4));
+  for (std::uint32_t i = 0; i < larger.sample.size(); ++i) larger.sample_models[i] = i % 2;
+  CHECK(are_far_too_many(larger, across, 4));
 
   // The pairs are those of a search without a slack, in this collision and in the next.
   Moving scene{.n_clients = 1,
@@ -431,6 +442,25 @@ TEST_CASE("colliders with a slack refuse capsules and coordinates without a cell
   machine.run(refused_and_again).require_success();
   REQUIRE_THAT(error, Catch::Contains("has no 32-bit cell at voxel size 1e-10"));
   REQUIRE(after.steps.at(0).empty());
+}
+
+TEST_CASE("boxes whose larger ones have no cells collide as without a slack", "[collide][slack]") {
+  Moving scene{.seed = 3, .drift = 0};
+  double highest = 0;
+  for (std::int32_t c = 0; c < scene.n_clients; ++c)
+    for (const Item& item : items_of(scene, c, 0))
+      for (const double x : item.box.hi) highest = std::max(highest, x);
+  scene.voxel_size = highest / 2147483000;  // the last cell is 2147483647
+  Outcome outcome;
+  test::Machine{.pes = 2, .seed = 3}
+      .run([&]() -> Task { return collide_steps(scene, 2, outcome); })
+      .require_success();
+  for (std::size_t step = 0; step < 2; ++step) {
+    REQUIRE_FALSE(outcome.steps.at(step).empty());
+    REQUIRE((outcome.steps.at(step) == all_pairs(scene, 0)));
+    REQUIRE(outcome.statistics[step].n_kept == 0);
+    REQUIRE(outcome.statistics[step].voxel_size == scene.voxel_size);
+  }
 }
 
 TEST_CASE("a slack is a length", "[collide][slack]") {

@@ -82,6 +82,44 @@ TEST_CASE("objects of one model in two lists are copied together, and only those
   }
 }
 
+TEST_CASE("few models are searched pair by pair, more are one set",
+          "[collide][parallel][voxel_problem]") {
+  std::vector<std::uint32_t> models;
+  for (std::uint32_t m = 0; m < most_separate_models; ++m) models.push_back(100 + m);
+  VoxelProblem voxel;
+  for (int time = 0; time < 2; ++time) {  // the memory is used again
+    const std::vector<Part> few{part_of(1, models), part_of(2, models)};
+    CHECK(searches_of(voxel, few, WithinModel::skip).size() ==
+          most_separate_models * (most_separate_models - 1) / 2);
+    CHECK(voxel.models().empty());
+
+    const std::vector<Part> many{part_of(1, models), part_of(2, {7, 103})};
+    const auto searches = searches_of(voxel, many, WithinModel::skip);
+    REQUIRE(searches.size() == 1);
+    const auto& [problem, of_a, of_b] = searches.front();
+    CHECK(problem.within_a);
+    CHECK(problem.a.size() == models.size() + 2);
+    CHECK(of_a == of_b);
+    for (const search::Entry entry : problem.a) {
+      const std::uint32_t object = search::object_of(entry);
+      CHECK(ModelId{voxel.models()[object]} == of_a->model(object));
+    }
+  }
+}
+
+TEST_CASE("natives of one model are not compared with each other",
+          "[collide][parallel][voxel_problem]") {
+  const Part all = part_of(1, {5, 5, 5, 0, 1, 2, 3, 4, 6, 7, 8, 9});
+  auto delivery = std::make_shared<Delivery>();
+  delivery->objects.append(all.delivery().objects, all.entries(), delivery->sorted);
+  VoxelProblem voxel;
+  const auto searches = searches_of(voxel, {Part(delivery, 0, 3, 9)}, WithinModel::skip);
+  REQUIRE(searches.size() == 1);
+  CHECK_FALSE(searches.front().problem.within_a);
+  CHECK(searches.front().problem.b.size() == 9);
+  CHECK(voxel.models().size() == 12);
+}
+
 TEST_CASE("if pairs within a model count, all objects are one set",
           "[collide][parallel][voxel_problem]") {
   const std::vector<Part> parts{part_of(1, {5, 3}), part_of(2, {3})};

@@ -4,6 +4,7 @@
 #include "tests/collide/shapes/rational.hpp"
 #include "tests/support/catch.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 using namespace tess::collide;
@@ -121,6 +122,31 @@ TEST_CASE("rays meet triangles and boxes as rational numbers say, at edges and c
   }
   CHECK(n_hits > 500);
   CHECK(n_box_hits > 500);
+}
+
+// The way to a box is longer than the largest double.
+TEST_CASE("a ray meets boxes at the other end of the range of coordinates in their order",
+          "[collide][shapes]") {
+  for (const double side : {1.0, -1.0})
+    for (const double speed : {1.0, 1e300, 1.7e308}) {
+      const Ray ray{{-1.2e308 * side, 0, 0}, {speed * side, 0, 0}};
+      CAPTURE(side, speed);
+      double last = 0;
+      for (const double near : {1.1e308, 1.2e308, 1.6e308}) {
+        const double x = near * side, y = (near + 1e307) * side;
+        const Aabb box{{std::min(x, y), -1, -1}, {std::max(x, y), 1, 1}};
+        const auto at = hit(box, ray);
+        REQUIRE(at);
+        if (speed == 1) {
+          CHECK(*at > 1.7e308);  // infinite
+          continue;
+        }
+        CHECK(*at > last);
+        REQUIRE(std::isfinite(*at));
+        CHECK(agree(box, ray));
+        last = *at;
+      }
+    }
 }
 
 TEST_CASE("rays meet balls at the root of the quadratic, and decide tangents exactly",

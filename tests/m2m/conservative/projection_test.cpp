@@ -1,12 +1,12 @@
 #include "m2m/conservative/projection.hpp"
 
+#include "apps/worst.hpp"
 #include "m2m/kuhn.hpp"
 #include "m2m/partition/partition.hpp"
 #include "m2m/partition/split.hpp"
 #include "tests/m2m/overlapping.hpp"
 #include "tests/m2m/samples.hpp"
 #include "tests/support/catch.hpp"
-#include "tests/support/worst.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -152,7 +152,7 @@ TEST_CASE("100 round trips conserve a Gaussian to 1e-12, where linear interpolat
     double worst = 0;
     for (int trip = 0; trip < 100; ++trip) {
       field = back(there(field, form), form);
-      tess::test::worsen(worst, std::abs(integral(a, field) / want - 1));
+      apps::worsen(worst, std::abs(integral(a, field) / want - 1));
     }
     const double peak_left = peak(field) / peak(start);
     CAPTURE(static_cast<int>(form), worst, peak_left);

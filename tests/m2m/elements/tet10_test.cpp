@@ -1,10 +1,10 @@
 #include "m2m/elements/tet10.hpp"
 
+#include "apps/worst.hpp"
 #include "m2m/kuhn.hpp"
 #include "tests/m2m/overlapping.hpp"
 #include "tests/m2m/samples.hpp"
 #include "tests/support/catch.hpp"
-#include "tests/support/worst.hpp"
 
 #include <cmath>
 #include <map>
@@ -78,7 +78,7 @@ double worst(const TetMesh& mesh, const std::vector<Point>& targets, std::size_t
   apply(rows, sampled(mesh.points, f), 1, got);
   double error = 0;
   for (std::size_t i = 0; i < got.size(); ++i)
-    tess::test::worsen(error, std::abs(got[i] - f(targets[i])));
+    apps::worsen(error, std::abs(got[i] - f(targets[i])));
   return error;
 }
 

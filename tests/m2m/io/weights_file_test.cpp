@@ -146,6 +146,42 @@ TEST_CASE("weights that cannot be used are refused with their place", "[m2m][wei
                  Catch::Contains("has 8 and") && Catch::Contains("has 27"));
 }
 
+TEST_CASE("weights whose number is unknown are refused", "[m2m][weights]") {
+  const Scratch scratch;
+  std::string bytes = weights_bytes(NetcdfVersion::cdf2, {}, {}, {}, scratch);
+  const auto refusal = [&] {
+    const std::string path = scratch.write("records.nc", bytes);
+    return message_of([&] { (void)read_weights(path); });
+  };
+  CHECK_THAT(refusal(), Catch::Contains("dimension n_s is the record dimension"));
+  bytes.replace(4, 4, 4, '\xff');
+  CHECK_THAT(refusal(), Catch::Contains("the number of records is unknown"));
+}
+
+TEST_CASE("a weights file of more rows than it can hold or its meshes have is refused",
+          "[m2m][weights]") {
+  const Scratch scratch;
+  std::string bytes = weights_bytes(NetcdfVersion::cdf2, {1}, {1}, {1}, scratch);
+  const TetMesh source = kuhn_mesh({1}), target = kuhn_mesh({2});
+  const auto of = [&](const char* dimension, std::uint32_t n) {
+    const std::size_t at = bytes.find(dimension) + 4;  // after the name and its padding
+    for (std::size_t i = 0; i < 4; ++i)
+      bytes[at + i] = static_cast<char>(n >> (24 - 8 * i) & 0xffU);
+  };
+  of("n_a", 8);
+  of("n_b", 27);
+  std::string path = scratch.write("w.nc", bytes);
+  CHECK(same(read_weights(path, source, target), read_weights(path)));
+  CHECK_THAT(message_of([&] { (void)read_weights(path, target, source); }),
+             Catch::Contains("holds weights from 8 to 27 vertices"));
+  of("n_b", 2147483647);
+  path = scratch.write("w.nc", bytes);
+  CHECK_THAT(message_of([&] { (void)read_weights(path); }),
+             Catch::Contains("has 2147483647 target vertices in "));
+  CHECK_THAT(message_of([&] { (void)read_weights(path, source, target); }),
+             Catch::Contains("holds weights from 8 to 2147483647 vertices"));
+}
+
 TEST_CASE("weights files that are cut or have flipped bits give one line of error",
           "[m2m][weights]") {
   const Scratch scratch;

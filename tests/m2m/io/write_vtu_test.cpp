@@ -292,6 +292,44 @@ TEST_CASE("solids of VTU are split, surfaces skipped, pieces joined, and fields 
   CHECK(rho.values[2 * 27 + 1] == 71);
 }
 
+TEST_CASE("comments and CDATA in VTU are no numbers, and no format", "[m2m][io]") {
+  const Scratch scratch;
+  const TetMesh mesh = kuhn_mesh({1});
+  Cells cells = cells_of(mesh);
+  cells.at_points = {"p", 1, {1, 2, 3, 4, 5, 6, 7, 8}};
+  const std::string text = vtu_of(cells);
+  const std::string numbers = "1 2 3 4 5 6 7 8 ";
+  const std::size_t at = text.find(numbers);
+  REQUIRE(at != std::string::npos);
+  for (const char* written :
+       {"<!-- Pa > 0 -->1 2 3 4 5 6 7 8", "1 2 3 <!-- <b> --> 4 5 6 7 8<!---->",
+        "<![CDATA[1 2 3 4 5 6]]><![CDATA[ 7 8]]>",
+        "1 2 3 4 5 6 7 8 <InformationKey name=\"a\"><Value>9</Value></InformationKey>"}) {
+    CAPTURE(written);
+    const std::string path =
+        scratch.write("marks.vtu", std::string(text).replace(at, numbers.size(), written));
+    CHECK(FieldFile(path).vertex_field(read_mesh(path), "p", 0).values == cells.at_points.values);
+  }
+  const std::string licence = "<!-- " + std::string(2000, 'x') + " <VTK> -->\n";
+  CHECK(read_mesh(scratch.write("long.vtu", licence + text.substr(text.find("<VTKFile")))).tets ==
+        mesh.tets);
+  CHECK_THAT(message_of([&] { (void)read_mesh(scratch.write("a.html", "<!-- <VTKFile --><p>")); }),
+             Catch::Contains("is neither"));
+}
+
+TEST_CASE("an array of VTU without components is refused only if it is asked for", "[m2m][io]") {
+  const Scratch scratch;
+  const TetMesh mesh = kuhn_mesh({1});
+  Cells cells = cells_of(mesh);
+  cells.at_points = {"p", 1, std::vector<double>(8, 3)};
+  cells.in_cells = {"q", 0, {}};
+  const std::string path = scratch.write("none.vtu", vtu_of(cells));
+  const FieldFile file(path);
+  CHECK(file.vertex_field(mesh, "p", 0).values == cells.at_points.values);
+  CHECK_THAT(message_of([&] { (void)file.tet_field(mesh, "q", 0); }),
+             Catch::Contains("'q' has 0 components"));
+}
+
 TEST_CASE("ghost cells of VTU are skipped, and reported", "[m2m][io]") {
   const Scratch scratch;
   Cells cells = cells_of(kuhn_mesh({1}));
@@ -301,6 +339,8 @@ TEST_CASE("ghost cells of VTU are skipped, and reported", "[m2m][io]") {
   CHECK(mesh.n_tets() == 3);
   CHECK(skipped_text(mesh) == "3 ghost");
   CHECK(FieldFile(path).tet_field(mesh, "vtkGhostType", 0).values == std::vector<double>{0, 0, 2});
+  cells.in_cells = {"vtkGhostLevels", 1, {0, 1, 0, 2, 0, 0}};  // of older files
+  CHECK(skipped_text(read_mesh(scratch.write("levels.vtu", vtu_of(cells)))) == "2 ghost");
 }
 
 TEST_CASE("what VTU can hold and is not supported is refused by name", "[m2m][io]") {

@@ -2,6 +2,7 @@
 // and limited to what a loop over all elements finds around.
 #include "m2m/reconstruct/element_corners.hpp"
 
+#include "apps/worst.hpp"
 #include "runtime/core/hash.hpp"
 #include "tests/m2m/element_meshes.hpp"
 #include "tests/m2m/samples.hpp"
@@ -12,6 +13,7 @@
 #include <map>
 #include <numeric>
 #include <set>
+#include <utility>
 
 using namespace tess::m2m;
 using tess::test::all_element_types;
@@ -28,13 +30,18 @@ struct Elements {
   TetMesh mesh;
   std::vector<GlobalId> of_tet, tet_ids;
 
-  explicit Elements(ElementType type) : mesh(element_mesh(type, 4)) {
-    tess::Random random(3);
-    for (Point& p : mesh.points)
-      for (double& x : p) x += 0.04 * (random.unit() - 0.5);
+  explicit Elements(TetMesh of) : mesh(std::move(of)) {
     tet_ids.resize(mesh.n_tets());
     std::iota(tet_ids.begin(), tet_ids.end(), 0);
     of_tet = mesh.element_of_tet.empty() ? tet_ids : mesh.element_of_tet;
+  }
+  explicit Elements(ElementType type) : Elements(moved(element_mesh(type, 4))) {}
+
+  static TetMesh moved(TetMesh mesh) {
+    tess::Random random(3);
+    for (Point& p : mesh.points)
+      for (double& x : p) x += 0.04 * (random.unit() - 0.5);
+    return mesh;
   }
   /// The mean of the values at the tetrahedra's centroids over the volume, in all tetrahedra.
   [[nodiscard]] Values means(const std::function<double(const Point&)>& f) const {
@@ -68,7 +75,7 @@ TEST_CASE("a linear field has its own values at the corners of all types of elem
     for (std::size_t i = 0; i < got.size(); ++i) {
       const VertexId v = elements.mesh.tets[i / 4][i % 4];
       const double want = linear_at(elements.mesh.points[static_cast<std::size_t>(v)]);
-      error = std::max(error, std::abs(got[i] - want));
+      apps::worsen(error, std::abs(got[i] - want));
     }
     CHECK(error < 1e-12);
     // The same values in meshes whose volumes times lengths leave the range of double.
@@ -80,9 +87,28 @@ TEST_CASE("a linear field has its own values at the corners of all types of elem
       const Values there = scaled.corners(values, CornerLimit::none);
       double change = 0;
       for (std::size_t i = 0; i < got.size(); ++i)
-        change = std::max(change, std::abs(there[i] - got[i]));
+        apps::worsen(change, std::abs(there[i] - got[i]));
       CHECK(change < 1e-12);
       CHECK(std::ranges::none_of(there, [](double x) { return std::isnan(x); }));
+    }
+  }
+}
+
+TEST_CASE("a single layer of elements, flat up to rounding or curved, has values near the field's",
+          "[m2m][reconstruct]") {
+  for (const auto& layer : tess::test::layers) {
+    INFO(layer.name);
+    const Elements elements(tess::test::layer_mesh(20, layer.place));
+    const auto wave = [&](const Point& p) { return tess::test::wave_at(p, layer.origin); };
+    for (const CornerLimit limit : {CornerLimit::none, CornerLimit::neighbours}) {
+      const Values got = elements.corners(elements.means(wave), limit);
+      double error = 0;
+      for (std::size_t i = 0; i < got.size(); ++i) {
+        const VertexId v = elements.mesh.tets[i / 4][i % 4];
+        apps::worsen(error,
+                     std::abs(got[i] - wave(elements.mesh.points[static_cast<std::size_t>(v)])));
+      }
+      CHECK(error < (limit == CornerLimit::none ? 0.1 : 0.2));
     }
   }
 }

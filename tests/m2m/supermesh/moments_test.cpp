@@ -1,5 +1,6 @@
 #include "m2m/supermesh/moments.hpp"
 
+#include "m2m/interpolate/orientation.hpp"
 #include "m2m/kuhn.hpp"
 #include "tests/m2m/overlapping.hpp"
 #include "tests/support/catch.hpp"
@@ -154,7 +155,7 @@ TEST_CASE("a mesh against itself gives each tetrahedron its own volume", "[m2m][
       const double overlap = overlap_volume(corners_of(mesh.points, mesh.tets[s]),
                                             corners_of(mesh.points, mesh.tets[t]));
       const double want = s == t ? signed_volume(mesh, s) : 0;
-      if (std::abs(overlap - want) > 1e-15 * want) FAIL(s << " " << t << ": " << overlap);
+      if (!(std::abs(overlap - want) <= 1e-15 * want)) FAIL(s << " " << t << ": " << overlap);
     }
   }
 }
@@ -193,6 +194,56 @@ TEST_CASE("moments integrate products of linear functions exactly", "[m2m][super
       }
     }
   }
+}
+
+TEST_CASE("a sliver that cuts has integrals between zero and the volume", "[m2m][supermesh]") {
+  // A small tetrahedron near the middle of a sliver. If it is inside, the weights of the sliver at
+  // its corners are quotients of volumes, and give the integrals.
+  RandomTets random(11);
+  std::size_t n_inside = 0;
+  for (const double flatness : {1e-6, 1e-8, 1e-10, 1e-13, 1e-15, 1e-16})
+    for (int i = 0; i < 300; ++i) {
+      const Corners sliver = random.next(flatness);
+      Point middle{};
+      for (const Point& p : sliver)
+        for (std::size_t axis = 0; axis < 3; ++axis) middle[axis] += p[axis] / 4;
+      Corners small = random.next(flatness);
+      for (Point& p : small)
+        for (std::size_t axis = 0; axis < 3; ++axis)
+          p[axis] = middle[axis] + 0.01 * (p[axis] - sliver[0][axis]);
+      CAPTURE(flatness, i);
+      const PairMoments moments = pair_moments(sliver, small);
+      if (!(std::abs(total(moments.mixed) - moments.volume) <= 1e-13 * moments.volume))
+        FAIL("total");
+      for (const Weights& row : moments.mixed)
+        for (const double x : row)
+          if (!(x >= 0 && x <= moments.volume * (1 + 1e-12))) FAIL(x << " of " << moments.volume);
+
+      const auto exact = [](const Corners& c) { return orientation_exact(c[0], c[1], c[2], c[3]); };
+      const double all = exact(sliver);
+      const double volume = std::abs(orientation(small[0], small[1], small[2], small[3])) / 6;
+      Matrix4 weights{};  // [corner of the sliver][corner of the small one]
+      bool inside = all != 0 && volume > 0;
+      for (std::size_t a = 0; a < 4; ++a)
+        for (std::size_t b = 0; b < 4; ++b) {
+          Corners part = sliver;
+          part[a] = small[b];
+          weights[a][b] = exact(part) / all;
+          inside = inside && weights[a][b] >= 0;
+        }
+      if (!inside) continue;
+      ++n_inside;
+      if (!(std::abs(moments.volume - volume) <= 1e-13 * volume)) FAIL("volume");
+      for (std::size_t a = 0; a < 4; ++a) {
+        const Weights& w = weights[a];
+        for (std::size_t b = 0; b < 4; ++b) {
+          const double want = volume / 20 * (w[b] + (w[0] + w[1]) + (w[2] + w[3]));
+          if (!(std::abs(moments.mixed[a][b] - want) <= 1e-13 * volume))
+            FAIL(moments.mixed[a][b] << " in place of " << want);
+        }
+      }
+    }
+  CHECK(n_inside > 100);
 }
 
 TEST_CASE("overlaps follow the scale of the meshes, from 1e-80 to 1e90, and their place",

@@ -3,6 +3,8 @@
 #include "runtime/checkpoint.hpp"
 #include "runtime/process_group.hpp"
 #include "runtime/runtime.hpp"
+#include "runtime/timer.hpp"
+#include "runtime/when.hpp"
 #include "tests/support/adversarial.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/scratch.hpp"
@@ -272,6 +274,18 @@ struct Restarting {
     const tess::Future<int> made;
     (void)co_await tess::restart<State>(folder);
   }
+  static tess::Task restart_with_timer(const std::string& folder) {
+    (void)tess::after(std::chrono::hours(1), [] {});
+    (void)co_await tess::restart<State>(folder);
+  }
+  /// Another coroutine of the main program sleeps while all messages are awaited.
+  static tess::Task sleep_long() { (void)co_await tess::sleep(std::chrono::hours(1)); }
+  static tess::Task restart_beside_sleep(const std::string& folder) {
+    const auto restart = [](const std::string& of) -> tess::Task {
+      (void)co_await tess::restart<State>(of);
+    };
+    co_await tess::when_all(restart(folder), sleep_long());
+  }
   static tess::Task restart_late(const std::string& folder) {
     (void)tess::create<Cell>(tess::range(2));
     (void)co_await tess::restart<State>(folder);
@@ -308,6 +322,14 @@ TEST_CASE("a group restarts on the same number of PEs, or its class says how",
   future.options.report = [&report](const std::string& line) { report = line; };
   CHECK(tess::run(future, [&] { return Restarting::restart_with_future(folder); }) == 2);
   CHECK(has(report, "restart() comes first, but this run has already made a future"));
+  auto timer = tess::test::adversarial(3, 3);
+  timer.options.report = [&report](const std::string& line) { report = line; };
+  CHECK(tess::run(timer, [&] { return Restarting::restart_with_timer(folder); }) == 2);
+  CHECK(has(report, "restart() comes first, but this run has already set a timer"));
+  auto sleep = tess::test::adversarial(3, 3);
+  sleep.options.report = [&report](const std::string& line) { report = line; };
+  CHECK(tess::run(sleep, [&] { return Restarting::restart_beside_sleep(folder); }) == 2);
+  CHECK(has(report, "restart() waits for all messages, but 1 timer is set on PE 0"));
 }
 
 namespace {

@@ -239,17 +239,23 @@ class Trees {
     contribute(pe, element, led ? static_cast<std::uint32_t>(element.seen) : 0);
   }
   void contribute(PeId pe, Voter& element, std::uint32_t led_by) {
-    element.created_after = 0;
+    // As Collection does: the tree checks the first contribution of an element.
+    Newcomer newcomer{std::exchange(element.created_after, 0), "a voter"};
+    if (!in_rounds) newcomer.created_after = 0;
     REQUIRE(element.next >= n_results);
     contributors[element.next].push_back(element.id);
     const EpochId in = epoch(element.next, bag.random.chance(0.5) ? 1 : 0);
     const Cause cause{element.seen, led_by};
     const std::uint32_t number = element.next++;
-    if (Partial* sum = tree(pe).open_sum(number, Contributors::its_kind(), in); sum != nullptr) {
+    Partial* const sum = newcomer.created_after != 0
+                             ? nullptr
+                             : tree(pe).open_sum(number, Contributors::its_kind(), in);
+    if (sum != nullptr) {
       static_cast<Contributors*>(sum)->ids.push_back(element.id);
       tree(pe).added(number, cause);
     } else {
-      tree(pe).contribute(number, in, std::make_unique<Contributors>(element.id), cause);
+      tree(pe).contribute(number, in, std::make_unique<Contributors>(element.id), cause,
+                          std::move(newcomer));
     }
   }
 

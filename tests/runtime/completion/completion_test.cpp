@@ -5,6 +5,7 @@
 #include "runtime/core/hash.hpp"
 #include "tests/support/catch.hpp"
 
+#include <map>
 #include <memory>
 #include <variant>
 
@@ -62,6 +63,7 @@ class Network {
   /// Sends a user's message of that epoch.
   void work(PeId from, Work work) {
     ++n_due;
+    ++due_of[work.epoch.value];
     at(from).sent(work.epoch);
     at(from).hop_sent();
     bag.push_back({any_pe(), work});
@@ -87,7 +89,8 @@ class Network {
   Random random;
   std::vector<std::unique_ptr<Completion>> pes;
   std::vector<Posted> bag;
-  int n_due = 0;  // user messages that are not done
+  int n_due = 0;                        // user messages that are not done
+  std::map<std::uint64_t, int> due_of;  // the same, by epoch
   int n_open = 0;
   bool quiescent = false;
 
@@ -101,6 +104,7 @@ class Network {
       if (random.chance(0.5)) this->work(to, {work.epoch, energy / 2});
     at(to).processed(work.epoch);
     --n_due;
+    --due_of[work.epoch.value];
     at(to).hop_processed();
   }
   /// Messages of epochs are hops of the run; those of the run are not.
@@ -163,7 +167,12 @@ TEST_CASE("epochs that overlap end each by itself", "[runtime][completion]") {
     for (int i = 0; i < 5; ++i) {
       const PeId opener = network.any_pe();
       ++network.n_open;
-      const EpochId epoch = network.at(opener).open(EpochId{}, [&network] { --network.n_open; });
+      const auto self = std::make_shared<EpochId>();
+      const EpochId epoch = network.at(opener).open(EpochId{}, [&network, self] {
+        REQUIRE(network.due_of[self->value] == 0);
+        --network.n_open;
+      });
+      *self = epoch;
       network.work(opener, {epoch, static_cast<int>(network.random.below(100))});
       network.at(opener).close(epoch);
     }

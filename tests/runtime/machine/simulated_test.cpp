@@ -65,8 +65,9 @@ TEST_CASE("the options of the simulated machine are read with their units",
 }
 
 TEST_CASE("a bad option of the simulated machine is named", "[runtime][simulated]") {
-  for (const char* bad : {"pes=0", "pes=many", "pes", "latency=-1us", "latency=1h", "bandwidth=0",
-                          "migrate=2", "colour=red", "pes=5,per-process=2", "seed=0.5", "pes=2x"}) {
+  for (const char* bad :
+       {"pes=0", "pes=many", "pes", "latency=-1us", "latency=1h", "bandwidth=0", "bandwidth=1e-9",
+        "migrate=2", "colour=red", "pes=5,per-process=2", "seed=0.5", "pes=2x"}) {
     INFO(bad);
     CHECK_THROWS_AS(tess::parse_simulated(bad), tess::Error);
   }

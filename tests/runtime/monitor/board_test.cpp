@@ -115,8 +115,28 @@ TEST_CASE("parts of a picture meet, whatever their order", "[runtime][monitor]")
   CHECK(picture["values"] == "0024496d92b6dbff");                // 0, 1/7, … 1 of 255
   CHECK(board.take_events(2, &nothing).back().kind == "frame");  // unchanged: not sent again
   CHECK(board.past().back().kind == "picture");
-  for (int i = 0; i < 100; ++i) board.draw({"p" + std::to_string(i), 1, 1, 0, 0, 1, {1}});
+  for (int i = 0; i < 100; ++i)
+    CHECK(board.draw({"p" + std::to_string(i), 1, 1, 0, 0, 1, {1}}) == (i < 15));
   CHECK(board.take_events(3, &nothing).size() == 16);  // a frame and fifteen new names
+}
+
+TEST_CASE("pictures of very small and very large numbers have all levels", "[runtime][monitor]") {
+  const auto machine = machine_of(1);
+  for (const float scale : {1e-38F, 1.0F, 1e38F}) {
+    Board board(*machine);
+    board.draw({"p", 4, 1, 0, 0, 4, {-3 * scale, -scale, scale, 3 * scale}});
+    CHECK(json::parse(board.take_events(1, &nothing).back().json)["values"] == "0055aaff");
+  }
+}
+
+TEST_CASE("a PE of another process that misses two frames is shown as busy", "[runtime][monitor]") {
+  const auto machine = tess::make_simulated_machine(tess::parse_simulated("pes=2,per-process=1"));
+  Board board(*machine);
+  board.arrived(sample(1, 1000, 1000, 50, 5));
+  for (int frames = 1; frames <= 4; ++frames) {
+    board.arrived(sample(0, 1000 * frames, 500, 100, 3));
+    CHECK(last_frame(board, frames)["busy"][1] == (frames < 3 ? 0 : 100));
+  }
 }
 
 TEST_CASE("a heat map that is watched again begins anew", "[runtime][monitor]") {
@@ -157,8 +177,15 @@ TEST_CASE("--monitor takes a port, and wants a token where others can reach it",
   CHECK(open.options.monitor->address == "::");
   CHECK(open.options.monitor->token == "x");
   CHECK_FALSE(with_options({"--pes", "1"}).options.monitor);
+  CHECK(with_options({"--pes", "1", "--monitor", "localhost:9"}).options.monitor->address ==
+        "127.0.0.1");
   for (const char* wrong : {"", "x", "65536", "-1", "0.0.0.0:80", "localhost:80x", "8080 "}) {
     INFO(wrong);
     CHECK_THROWS_AS(with_options({"--pes", "1", "--monitor", wrong}), tess::Error);
   }
+  // What browsers would write otherwise in an address.
+  for (const char* token : {"a+b", "a/b", "a=", "a&b", "a b", "50%"})
+    CHECK_THROWS_WITH(with_options({"--monitor", "80", "--monitor-token", token}),
+                      Catch::Contains(token) && Catch::Contains("letters, digits"));
+  CHECK_THROWS_WITH(with_options({"--monitor-token", "x"}), Catch::Contains("--monitor, which is"));
 }

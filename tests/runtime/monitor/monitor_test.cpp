@@ -312,4 +312,6 @@ TEST_CASE("a port that is taken is refused by name", "[runtime][monitor]") {
   CHECK_THROWS_WITH(tess::run(setup, [] {}),
                     Catch::Contains(std::to_string(taken.local_endpoint().port())) &&
                         Catch::Contains("choose another port"));
+  setup.options.monitor = tess::MonitorOptions{"0.0.0.0", 0, "", 20};
+  CHECK_THROWS_WITH(tess::run(setup, [] {}), Catch::Contains("other machines can reach"));
 }

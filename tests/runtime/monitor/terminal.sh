@@ -11,7 +11,7 @@ begin() {
   "$@" >"$scratch/run" 2>"$scratch/lines" &
   run=$!
   for _ in $(seq 200); do
-    at=$(grep -o '127.0.0.1:[0-9]*' "$scratch/lines")
+    at=$(grep -oE '(127\.0\.0\.1|\[::1\]):[0-9]+' "$scratch/lines")
     if [[ -n $at ]]; then return; fi
     sleep 0.1
   done
@@ -51,6 +51,12 @@ sees 'no array is named Blok yet' --heat Blok
 exits 2 '\-\-by' "$monitor" --connect "$at" --heat Block --by size
 end
 exits 2 'is the run started with --monitor' "$monitor" --connect "$at"
+
+if grep -q '^0\{31\}1 ' /proc/net/if_inet6 2>/dev/null; then  # this machine has ::1
+  begin "$stencil" --pes 2 --monitor '[::1]:0' "${problem[@]}"
+  sees 'stencil::Block *64 *32 *32' --frames 40
+  end
+fi
 
 begin "$stencil" --sim pes=2048,cost=1us --monitor 0 --size 2048 --blocks 64 --steps 1000000000
 sees 'Block by pe: 4096 elements on 2048 of 2048 PEs, at most 2' --heat Block --by pe

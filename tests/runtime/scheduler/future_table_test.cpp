@@ -2,6 +2,8 @@
 
 #include "tests/support/catch.hpp"
 
+#include <array>
+
 using tess::detail::FutureTable;
 
 TEST_CASE("a number that is no longer in use finds no future, though its place is used again",
@@ -44,5 +46,18 @@ TEST_CASE("after a restart no new future has a number of the saved run, and earl
   CHECK(table.find(early) == &moved);
   table.leave(early);
   CHECK(table.find(early) == nullptr);
+  CHECK(table.find(id) == &after);
+}
+
+TEST_CASE("a run that made more futures than the saved one keeps them apart from new ones",
+          "[runtime][future]") {
+  FutureTable table;
+  std::array<int, 3> before{};
+  std::array<std::uint64_t, 3> early{};
+  for (std::size_t i = 0; i < 3; ++i) early[i] = table.enter(&before[i]);
+  table.begin_behind(1);
+  int after = 0;
+  const std::uint64_t id = table.enter(&after);
+  for (std::size_t i = 0; i < 3; ++i) CHECK(table.find(early[i]) == &before[i]);
   CHECK(table.find(id) == &after);
 }

@@ -25,6 +25,24 @@ TEST_CASE("every voxel size of the study gives the same pairs", "[apps][collide_
   CHECK(rows[0].voxel_size < rows[7].voxel_size);
 }
 
+TEST_CASE("the study compares with the voxel size of the library, whatever the options give",
+          "[apps][collide_scene]") {
+  apps::Progress progress(nullptr);
+  const Scene scene = make_scene("planes:4096");
+  const std::vector<StudyRow> expected = study(scene, {}, progress);
+  Options options;
+  for (const double voxel_size : {1e-9, 3.0}) {  // the first is refused
+    options.rules.voxel_size = voxel_size;
+    const std::vector<StudyRow> rows = study(scene, options, progress);
+    CHECK(agrees(rows));
+    REQUIRE(rows.size() == expected.size());
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      CHECK(rows[i].voxel_size == expected[i].voxel_size);
+      CHECK(rows[i].false_positive_rate == expected[i].false_positive_rate);
+    }
+  }
+}
+
 TEST_CASE("a study in which one voxel size loses a pair does not agree", "[apps][collide_scene]") {
   apps::Progress progress(nullptr);
   std::vector<StudyRow> rows = study(make_scene("boxes:500"), {}, progress);

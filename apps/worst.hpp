@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace tess::test {
+namespace apps {
 
 /// The greatest so far, or NaN.
 inline void worsen(double& worst, double value) {
@@ -14,4 +14,4 @@ inline void lower(double& least, double value) {
   if (value < least || std::isnan(value)) least = value;
 }
 
-}  // namespace tess::test
+}  // namespace apps

@@ -1,0 +1,180 @@
+// ExodusII files whose parts contradict each other: libexodusII does not notice it.
+#include "m2m/field_file.hpp"
+#include "m2m/kuhn.hpp"
+#include "m2m/read_mesh.hpp"
+#include "m2m/write_exodus.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/scratch.hpp"
+
+#include <array>
+#include <exodusII.h>
+#include <functional>
+#include <netcdf.h>
+#include <vector>
+
+using namespace tess::m2m;
+using tess::test::message_of;
+using tess::test::Scratch;
+using tess::test::slurp;
+
+namespace {
+
+/// Two tetrahedra in two blocks, a side set and a node set of one entry each, and a time step.
+/// `change` gets the open file, in NetCDF's define mode.
+std::string two_tets(const Scratch& scratch, int mode, const std::function<void(int id)>& change) {
+  const std::string path = scratch.path("two.exo");
+  int compute = 8, stored = 8;
+  const int id = ex_create(path.c_str(), EX_CLOBBER | mode, &compute, &stored);
+  REQUIRE(id >= 0);
+  const std::array<double, 5> x{0, 1, 0, 0, 1}, y{0, 0, 1, 0, 1}, z{0, 0, 0, 1, 1};
+  ex_put_init(id, "two", 3, 5, 2, 2, 1, 1);
+  ex_put_coord(id, x.data(), y.data(), z.data());
+  const std::array<int, 4> first{1, 2, 3, 4}, second{2, 3, 4, 5};
+  ex_put_block(id, EX_ELEM_BLOCK, 1, "TET4", 1, 4, 0, 0, 0);
+  ex_put_conn(id, EX_ELEM_BLOCK, 1, first.data(), nullptr, nullptr);
+  ex_put_block(id, EX_ELEM_BLOCK, 2, "TET4", 1, 4, 0, 0, 0);
+  ex_put_conn(id, EX_ELEM_BLOCK, 2, second.data(), nullptr, nullptr);
+  const int one = 1;
+  const std::array<double, 3> factors{1, 2, 3};
+  ex_put_set_param(id, EX_SIDE_SET, 7, 1, 3);
+  ex_put_set(id, EX_SIDE_SET, 7, &one, &one);
+  ex_put_set_dist_fact(id, EX_SIDE_SET, 7, factors.data());
+  ex_put_set_param(id, EX_NODE_SET, 8, 1, 1);
+  ex_put_set(id, EX_NODE_SET, 8, &one, nullptr);
+  ex_put_set_dist_fact(id, EX_NODE_SET, 8, factors.data());
+  const double time = 0;
+  ex_put_time(id, 1, &time);
+  REQUIRE(nc_redef(id) == NC_NOERR);
+  change(id);
+  (void)nc_enddef(id);
+  ex_close(id);
+  return path;
+}
+
+std::string refusal_of_file(const std::string& path) {
+  const std::string message = message_of([&] {
+    (void)read_mesh(path);
+    (void)FieldFile(path);
+  });
+  CHECK(message.find('\n') == std::string::npos);
+  return message;
+}
+
+}  // namespace
+
+TEST_CASE("a list of an ExodusII file that is longer than its count is refused", "[m2m][io]") {
+  const Scratch scratch;
+  for (const int mode : {0, EX_NETCDF4}) {
+    CHECK(refusal_of_file(two_tets(scratch, mode, [](int) {})).empty());
+    for (const char* list :
+         {"eb_prop1", "eb_status", "ss_prop1", "ss_status", "ns_prop1", "ns_status", "elem_ss1",
+          "side_ss1", "dist_fact_ss1", "node_ns1", "dist_fact_ns1", "time_whole"}) {
+      CAPTURE(mode, list);
+      const std::string path = two_tets(scratch, mode, [&](int id) {
+        int variable = 0, longer = 0;
+        nc_type type = NC_INT;
+        REQUIRE(nc_inq_varid(id, list, &variable) == NC_NOERR);
+        REQUIRE(nc_inq_vartype(id, variable, &type) == NC_NOERR);
+        REQUIRE(nc_rename_var(id, variable, "elsewhere") == NC_NOERR);
+        REQUIRE(nc_def_dim(id, "longer", 300'000, &longer) == NC_NOERR);
+        REQUIRE(nc_def_var(id, list, type, 1, &longer, &variable) == NC_NOERR);
+        REQUIRE(nc_enddef(id) == NC_NOERR);
+        const std::vector<int> ones(300'000, 1);
+        REQUIRE(nc_put_var_int(id, variable, ones.data()) == NC_NOERR);
+      });
+      CHECK_THAT(refusal_of_file(path), Catch::Contains(std::string("variable ") + list + " has "));
+    }
+  }
+}
+
+TEST_CASE("a type of elements of more than 32 characters is refused", "[m2m][io]") {
+  const Scratch scratch;
+  for (const int mode : {0, EX_NETCDF4}) {
+    for (const std::size_t length : {32U, 33U, 34U, 100U, 4000U}) {
+      CAPTURE(mode, length);
+      const std::string path = two_tets(scratch, mode, [&](int id) {
+        int variable = 0;
+        REQUIRE(nc_inq_varid(id, "connect1", &variable) == NC_NOERR);
+        std::string type = "TET4";
+        type.resize(length);
+        REQUIRE(nc_put_att_text(id, variable, "elem_type", length, type.data()) == NC_NOERR);
+      });
+      const std::string message = refusal_of_file(path);
+      CHECK(message.empty() == (length <= 33));  // with the null byte
+      if (length > 33) CHECK_THAT(message, Catch::Contains("elem_type"));
+    }
+  }
+}
+
+TEST_CASE("an ExodusII file in NetCDF-3 has no more nodes than bytes", "[m2m][io]") {
+  const Scratch scratch;
+  const std::string path = scratch.path("claims.exo");
+  int compute = 8, stored = 8, dimension = 0;
+  const int id = ex_create(path.c_str(), EX_CLOBBER, &compute, &stored);
+  REQUIRE(id >= 0);
+  (void)nc_redef(id);
+  for (const auto& [name, length] :
+       {std::pair{"num_dim", 3U}, {"num_nodes", 100'000U}, {"num_elem", 1U}, {"num_el_blk", 1U}})
+    REQUIRE(nc_def_dim(id, name, length, &dimension) == NC_NOERR);
+  (void)nc_enddef(id);
+  ex_close(id);
+  CHECK_THAT(refusal_of_file(path), Catch::Contains("number of nodes"));
+}
+
+TEST_CASE("an ExodusII file that was not closed, or has two dimensions of a name, is refused",
+          "[m2m][io]") {
+  const Scratch scratch;
+  const TetMesh mesh = kuhn_mesh({1});
+  write_exodus(scratch.path("a.exo"), mesh,
+               std::array{Field{"f", 1, std::vector<double>(mesh.n_points())}});
+  const std::string bytes = slurp(scratch.path("a.exo"));
+  const std::size_t n = bytes[3] == 5 ? 8 : 4;
+  std::string open = bytes;
+  open.replace(4, n, n, '\xff');
+  CHECK_THAT(refusal_of_file(scratch.write("open.exo", open)),
+             Catch::Contains("the number of records is unknown, since the file was not closed"));
+  std::string twice = bytes;
+  twice.replace(twice.find("len_string"), 10, "num_el_blk");
+  CHECK_THAT(refusal_of_file(scratch.write("twice.exo", twice)),
+             Catch::Contains("two dimensions are called num_el_blk"));
+}
+
+TEST_CASE("polygons and springs of ExodusII are skipped, and solids in one list are refused",
+          "[m2m][io]") {
+  const Scratch scratch;
+  const std::string path = scratch.path("polygons.exo");
+  int compute = 8, stored = 8;
+  const int id = ex_create(path.c_str(), EX_CLOBBER, &compute, &stored);
+  REQUIRE(id >= 0);
+  const std::array<double, 5> x{0, 1, 0, 0, 1}, y{0, 0, 1, 0, 1}, z{0, 0, 0, 1, 1};
+  ex_put_init(id, "polygons", 3, 5, 3, 3, 0, 0);
+  ex_put_coord(id, x.data(), y.data(), z.data());
+  const std::array<int, 4> tet{1, 2, 3, 4};
+  const int n_corners = 4;
+  ex_put_block(id, EX_ELEM_BLOCK, 1, "TET4", 1, 4, 0, 0, 0);
+  ex_put_conn(id, EX_ELEM_BLOCK, 1, tet.data(), nullptr, nullptr);
+  ex_put_block(id, EX_ELEM_BLOCK, 2, "nsided", 1, 4, 0, 0, 0);  // its size is the sum of corners
+  ex_put_conn(id, EX_ELEM_BLOCK, 2, tet.data(), nullptr, nullptr);
+  ex_put_entity_count_per_polyhedra(id, EX_ELEM_BLOCK, 2, &n_corners);
+  ex_put_block(id, EX_ELEM_BLOCK, 3, "SPRING", 1, 2, 0, 0, 0);
+  ex_put_conn(id, EX_ELEM_BLOCK, 3, tet.data(), nullptr, nullptr);
+  ex_close(id);
+  const TetMesh mesh = read_mesh(path);
+  CHECK(mesh.n_tets() == 1);
+  CHECK(skipped_text(mesh) == "1 NSIDED, 1 SPRING");
+  std::string bytes = slurp(path);
+  const std::size_t at = bytes.find("nsided");
+  REQUIRE(at != std::string::npos);
+  bytes.replace(at, 6, "TETRA4");
+  CHECK_THAT(refusal_of_file(scratch.write("solid.exo", bytes)),
+             Catch::Contains("variable connect2 has "));
+  const std::string in_netcdf4 = two_tets(scratch, EX_NETCDF4, [](int file) {
+    int variable = 0, vertices = 0;
+    REQUIRE(nc_inq_varid(file, "connect2", &variable) == NC_NOERR);
+    REQUIRE(nc_rename_var(file, variable, "elsewhere") == NC_NOERR);
+    REQUIRE(nc_inq_dimid(file, "num_nod_per_el2", &vertices) == NC_NOERR);
+    REQUIRE(nc_def_var(file, "connect2", NC_INT, 1, &vertices, &variable) == NC_NOERR);
+    REQUIRE(nc_put_att_text(file, variable, "elem_type", 4, "TET4") == NC_NOERR);
+  });
+  CHECK_THAT(refusal_of_file(in_netcdf4), Catch::Contains("variable connect2 has "));
+}

@@ -1,0 +1,45 @@
+#include "m2m/write_pvtu.hpp"
+
+#include "m2m/kuhn.hpp"
+#include "runtime/testing.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/scratch.hpp"
+
+using namespace tess;
+using namespace tess::m2m;
+
+namespace {
+
+/// Writes a mesh of two components; the message of the Error is empty if there is none.
+Task write_with(std::string path, std::vector<std::string> names, std::string* message) {
+  const TetMesh cube = kuhn_mesh({2});
+  const std::vector<double> zeros(cube.n_points());
+  DistributedMesh mesh;
+  co_await epoch([&] {
+    mesh = scatter(cube, {{"a", 1, zeros}, {"b", 1, zeros}}, 2, PartitionMethod::curve);
+  });
+  try {
+    co_await write_pvtu(path, mesh, names);
+  } catch (const Error& error) {
+    *message = error.what();
+  }
+}
+
+}  // namespace
+
+TEST_CASE("names that parts cannot write are refused before a part writes", "[m2m][io]") {
+  const test::Scratch scratch;
+  const std::string path = scratch.path("r.pvtu");
+  const auto refusal = [&](std::vector<std::string> names) {
+    std::string message;
+    const test::Machine machine{.pes = 2, .seed = 1};
+    machine.run([&]() -> Task { return write_with(path, names, &message); }).require_success();
+    return message;
+  };
+  CHECK_THAT(refusal({"p", "p"}), Catch::StartsWith(path + ": two fields have the name 'p'"));
+  CHECK_THAT(refusal({"status", "p"}), Catch::Contains("two fields have the name 'status'"));
+  CHECK_THAT(refusal({"p", ""}), Catch::Contains("a field has no name"));
+  CHECK(scratch.n_files() == 0);
+  CHECK(refusal({"p", "q"}).empty());
+  CHECK(scratch.n_files() == 3);
+}
