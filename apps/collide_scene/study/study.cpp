@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
+#include <utility>
 
 namespace collide_scene {
 namespace {
@@ -45,10 +45,11 @@ std::vector<StudyRow> study(const Scene& scene, const Options& options, apps::Pr
   constexpr std::array factors{1.0, 0.125, 0.25, 0.5, 2.0, 4.0, 8.0, 16.0};
   const std::uint32_t n_kinds = scene.triangles.empty() ? 1 : 2;
   std::vector<StudyRow> rows;
-  std::optional<Answer> reference;  // of the objects, that of the first row that is not refused
+  Answer reference;  // of the objects, that of the first row that is not refused
+  bool has_reference = false;
   for (std::uint32_t kind = 0; kind < n_kinds; ++kind) {
     const std::size_t chosen = rows.size();
-    reference.reset();
+    has_reference = false;
     for (const double factor : factors) {
       progress.part(rows.size() + 1, n_kinds * factors.size());
       progress.phase("study: voxel sizes");
@@ -61,16 +62,16 @@ std::vector<StudyRow> study(const Scene& scene, const Options& options, apps::Pr
       rules.voxel_size = row.voxel_size = factor == 1 ? 0 : factor * rows[chosen].voxel_size;
       measure(scene, rules, row);
       if (factor == 1 && !(row.voxel_size > 0)) row.voxel_size = edge_per_object(scene);
-      if (row.note.empty() && !reference) reference = row.answer;
-      row.agrees = reference && row.note.empty() && row.answer.has_pairs_of(*reference);
+      if (row.note.empty() && !std::exchange(has_reference, true)) reference = row.answer;
+      row.agrees = row.note.empty() && row.answer.has_pairs_of(reference);
       rows.push_back(row);
     }
   }
   // The last reference has the pairs of objects, if one of their searches was not refused.
   for (StudyRow& row : rows)
-    if (reference && row.answer.n_pairs > 0)
+    if (has_reference && row.answer.n_pairs > 0)
       row.false_positive_rate =
-          1 - static_cast<double>(reference->n_pairs) / static_cast<double>(row.answer.n_pairs);
+          1 - static_cast<double>(reference.n_pairs) / static_cast<double>(row.answer.n_pairs);
   std::ranges::stable_sort(rows, [](const StudyRow& a, const StudyRow& b) {
     return a.objects != b.objects ? a.objects < b.objects : a.factor < b.factor;
   });
