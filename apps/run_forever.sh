@@ -6,7 +6,8 @@
 #
 # It gives up after five runs in a row that wrote no checkpoint. It does not start again after a bad option (exit code 2)
 # nor after SIGINT and SIGTERM: the program ends with 130 or 143, or this script has the signal, too, as after Ctrl-C. (mpirun
-# ends with 1 then. A SIGTERM to mpirun only looks like a failure, and the program is started again.)
+# ends with 1 then. A SIGTERM to mpirun only looks like a failure, and the program is started again; one to this script only
+# takes effect when the program ends: send it to the process group.)
 set -u
 if (($# < 2)); then
   echo "usage: run_forever.sh FOLDER COMMAND…" >&2

@@ -56,7 +56,7 @@ fi
 # Names of packages that apt would remove; the list of packages may be old or empty on a new machine.
 removed() { apt-get install -s --no-install-recommends "${missing[@]}" 2>/dev/null | awk '$1 == "Remv" { print $2 }'; }
 known() { apt-get install -s --no-install-recommends "${missing[@]}" >/dev/null 2>&1; }
-first_error() { { apt-get install -s --no-install-recommends "${missing[@]}" 2>&1 || true; } | grep -m 1 '^E:'; }
+first_error() { { apt-get install -s --no-install-recommends "${missing[@]}" 2>&1 || true; } | grep -m 1 '^E:' || echo 'apt gives no reason'; }
 
 if $dry; then
   echo "setup: would install ${missing[*]}${run:+ (with sudo)}"

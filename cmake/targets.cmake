@@ -60,8 +60,7 @@ endfunction()
 
 # tess_library(NAME SOURCES … HEADERS … DEPENDS … USES … USES_TO_BUILD …): headers are listed so that a test compiles
 # each alone (not those of programs) and that they are installed. DEPENDS stand in the headers, USES in the sources only, and USES_TO_BUILD have
-# no library that a program would link. A library of a component (TESS_COMPONENT) is installed, but not by a project that
-# has Tessera as a subdirectory: it links what it needs into its programs.
+# no library that a program would link. A library of a component (TESS_COMPONENT) is installed if TESS_INSTALL is set.
 # Sanitizer builds make the libraries that a test needs.
 function(tess_library name)
   cmake_parse_arguments(ARG "" "" "SOURCES;HEADERS;DEPENDS;USES;USES_TO_BUILD" ${ARGN})
@@ -72,7 +71,7 @@ function(tess_library name)
     target_link_libraries(${name} PUBLIC tess_interface ${ARG_DEPENDS}
       PRIVATE ${ARG_USES} $<BUILD_INTERFACE:tess_options> $<BUILD_INTERFACE:${ARG_USES_TO_BUILD}>)
     tess_reuse_runtime_header(${name} ${ARG_DEPENDS})
-    if(TESS_SANITIZE OR NOT PROJECT_IS_TOP_LEVEL)
+    if(TESS_SANITIZE OR NOT TESS_INSTALL)
       set_target_properties(${name} PROPERTIES EXCLUDE_FROM_ALL ON)
     endif()
   else()
@@ -82,7 +81,7 @@ function(tess_library name)
   endif()
   list(TRANSFORM ARG_HEADERS REPLACE "/[^/]+/\\.\\./" "/")
   target_sources(${name} ${scope} FILE_SET HEADERS BASE_DIRS "${PROJECT_SOURCE_DIR}" FILES ${ARG_HEADERS})
-  if(TESS_COMPONENT AND PROJECT_IS_TOP_LEVEL)
+  if(TESS_COMPONENT AND TESS_INSTALL)
     install(TARGETS ${name} EXPORT Tessera_${TESS_COMPONENT} FILE_SET HEADERS DESTINATION include/tessera)
   endif()
   list(FILTER ARG_SOURCES EXCLUDE REGEX "^/")  # generated

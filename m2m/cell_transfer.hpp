@@ -12,10 +12,11 @@
 // | `conservative_lumped`  | mean over what overlaps it of the source cells' values    | 1     |
 //
 // Kinds with gradients are exact for linear fields; limits lower the order at extrema and
-// boundaries. Across a single layer of elements, flat or curved, the gradient is zero. An element
-// that was split is one cell of the source (TetMesh::element_of_tet). In the target each of its
-// tetrahedra gets a value of its own. The result depends only on the meshes and the fields, as for
-// transfers between vertices.
+// boundaries. Across a single layer of elements that is flat, or so gently curved that the
+// neighbours of an element lie less than a quarter as far off its plane as its own corners, the
+// gradient is zero. An element that was split is one cell of the source (TetMesh::element_of_tet).
+// In the target each of its tetrahedra gets a value of its own. The result depends only on the
+// meshes and the fields, as for transfers between vertices.
 #pragma once
 
 #include "m2m/field.hpp"

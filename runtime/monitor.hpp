@@ -33,8 +33,9 @@ struct Picture {
   std::vector<double> values;          ///< of the part; not finite: drawn as the least
 };
 
-/// Shows what `picture()` returns; a page has pictures of at most 16 names. `part` distinguishes the parts of a picture that one PE shows:
-/// it takes one of each between two samples. Parts of different times may meet in a picture.
+/// Shows what `picture()` returns; a page has pictures of at most 16 names. `part` distinguishes
+/// the parts of a picture that one PE shows: it takes one of each between two samples. Parts of
+/// different times may meet in a picture.
 template <std::invocable F>
   requires std::same_as<std::invoke_result_t<F>, Picture>
 void show(std::string_view name, std::uint64_t part, F&& picture) {

@@ -11,6 +11,7 @@
 #include "runtime/scheduler/runtime.hpp"
 #include "runtime/service/service.hpp"
 
+#include <cctype>
 #include <cstdio>
 #include <cstring>
 #include <new>

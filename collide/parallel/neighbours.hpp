@@ -59,13 +59,17 @@ class Neighbours : public Group<Neighbours> {
   /// Tests some of the pairs; then the next ones, when other messages had their turn.
   void test(std::uint64_t step);
   void receive_boxes(std::uint64_t step, std::int32_t from, std::vector<Aabb> boxes);
-  /// The collision was refused.
-  void drop(std::uint64_t step) { rounds_.erase(step); }
+  /// The collision was refused; the next one may keep pairs again.
+  void drop(std::uint64_t step) {
+    rounds_.erase(step);
+    keeps_none_ = false;
+  }
   /// Frees what is kept. The next collision searches.
   void forget();
 
   [[nodiscard]] bool is_colliding() const { return !rounds_.empty(); }
-  /// Pairs were too many once: collisions are those of the Managers, until forget().
+  /// Pairs were too many once, or a larger box had no cell: collisions are those of the Managers,
+  /// until forget().
   [[nodiscard]] bool keeps_none() const { return keeps_none_; }
 
  private:

@@ -6,7 +6,8 @@ namespace tess::m2m {
 namespace {
 
 /// The point of the edge from `in` (above the face) to `out` (below) at the height zero. Swapping
-/// both ends and all signs gives the same bits, so the two tetrahedra at a face cut alike.
+/// both ends and all signs gives the same bits, so the two tetrahedra at a face cut alike (unless
+/// only one of them is flat, moments.cpp).
 Polyhedron::Vertex crossing(const Polyhedron::Vertex& in, const Polyhedron::Vertex& out,
                             std::size_t face) {
   const double a = in.heights[face], b = out.heights[face];

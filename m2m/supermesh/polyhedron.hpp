@@ -28,7 +28,7 @@ class Polyhedron {
  public:
   struct Vertex {
     Weights weights;  ///< barycentric coordinates in the carried tetrahedron
-    Weights heights;  ///< above the faces of the cutting tetrahedron, in any unit per face
+    Weights heights;  ///< above the faces of the cutting tetrahedron; their sum is constant
     std::array<std::uint8_t, 3> next;
   };
 

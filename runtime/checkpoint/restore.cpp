@@ -273,19 +273,23 @@ void check_plan(const Chosen& chosen, const std::string& state_type, std::int32_
          ", but restart<", state_type, ">() reads another");
 }
 
+/// Elements are under way until all is quiet, and a timer would hide that.
+Task wait_until_quiet() {
+  Quiet quiet;
+  const std::vector<std::string> set = co_await quiet;
+  if (set.empty()) co_return;
+  AskAll<&thaw_here> thawed(Thaw{});
+  (void)co_await thawed;
+  fail(ErrorCode::bad_argument, "restart() waits for all messages, but ", set.front(),
+       ": let no other coroutine sleep or set timers meanwhile");
+}
+
 }  // namespace
 
 std::string latest_checkpoint(const std::string& folder) {
   for (const std::uint64_t number : numbers_in(folder))
     if (is_complete(folder, number)) return folder_of(folder, number);
   return {};
-}
-
-/// Elements are under way until all is quiet, and a timer would hide that.
-void refuse_timers(const std::vector<std::string>& set) {
-  if (!set.empty())
-    fail(ErrorCode::bad_argument, "restart() waits for all messages, but ", set.front(),
-         ": let no other coroutine sleep or set timers meanwhile");
 }
 
 Task read_checkpoint(std::string folder, std::string state_type, std::vector<std::byte>& state) {
@@ -342,14 +346,12 @@ Task read_checkpoint(std::string folder, std::string state_type, std::vector<std
   AskAll<&restore_here> restored(ReadQuestion{chosen->folder, chosen->readings});
   for (const std::string& error : co_await restored)
     if (!error.empty()) fail(ErrorCode::environment, "the restart failed: ", error);
-  Quiet arrived;
-  refuse_timers(co_await arrived);
+  co_await wait_until_quiet();
   AskAll<&finish_here> finished(
       FinishQuestion{chosen->main.collections, chosen->main.numbers, chosen->main.sections,
                      chosen->main.places_of_futures, chosen->main.timers});
   (void)co_await finished;
-  Quiet settled;
-  refuse_timers(co_await settled);
+  co_await wait_until_quiet();
   AskAll<&thaw_here> thawed(Thaw{});
   (void)co_await thawed;
   pe.runtime().made_before_restart() = std::move(chosen->main.numbers);

@@ -46,7 +46,7 @@ struct Value {
     const double rate = value * factor;
     if (!(rate >= 1 && rate <= 1e18))
       fail(ErrorCode::bad_argument, place, ": ", text,
-           " is not a rate (a number with MB/s or GB/s; at least a byte a second)");
+           " is not a rate (a number with MB/s or GB/s, from a byte to 1e9 GB a second)");
     return rate;
   }
   [[nodiscard]] std::int64_t whole(std::int64_t least, std::int64_t most) const {

@@ -34,8 +34,8 @@ auto read_all(Reader& body, const What& what, const Read& read) {
   } catch (const std::bad_alloc&) {  // the message is lost, so the run cannot go on
     check_failed("memory", __FILE__, __LINE__,
                  text("memory is exhausted where ", what(), ", ", n_bytes,
-                      " bytes and what is attached to them, is received; ask for less, or give "
-                      "this machine more"));
+                      " bytes and what is attached to them, is read; ask for less, give this "
+                      "machine more, or see whether serialize() reads what it writes"));
   } catch (const std::exception& error) {
     refuse_reading(what(), n_bytes, error.what());
   } catch (...) {

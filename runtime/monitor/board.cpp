@@ -149,7 +149,10 @@ std::string Board::frame(double seconds, const std::function<std::string(PeId)>&
       of.percent = static_cast<int>(std::lround(std::clamp(100 * (1 - idle / passed), 0.0, 100.0)));
       of.rate = std::min(ran * 1e9 / passed, 2e9);
     }
-    of.n_missed = of.is_new ? 0 : of.n_missed + 1;
+    if (of.is_new)
+      of.n_missed = 0;
+    else if (passes_on)
+      ++of.n_missed;
     if (!of.is_new) {  // perhaps it runs something long
       const auto index = static_cast<std::int32_t>(&of - pes_.data());
       std::string action = runs(PeId{index});

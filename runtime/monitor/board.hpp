@@ -61,7 +61,7 @@ class Board {
     bool is_new = false;  // came since the last frame
     int percent = 0;      // busy
     double rate = 0;      // messages a second
-    int n_missed = 0;     // frames since it came
+    int n_missed = 0;     // frames since it came in which PE 0 has answered
   };
   struct Picture {
     std::int32_t width = 0, height = 0;

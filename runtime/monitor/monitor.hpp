@@ -8,8 +8,8 @@
 //
 // None of these messages is counted by an epoch, so the run ends as it would without them. A PE
 // that runs a long entry method answers when it is over; until then the page shows it as busy, with
-// the name of the entry method if it is one of process 0. On the simulated machine the samples are taken every period of wall
-// time and show virtual time; their messages take part in the schedule.
+// the name of the entry method if it is one of process 0. On the simulated machine the samples are
+// taken every period of wall time and show virtual time; their messages take part in the schedule.
 #pragma once
 
 #include "runtime/monitor/sample.hpp"

@@ -82,7 +82,6 @@ inline m2m::TetMesh element_mesh(m2m::ElementType type, int n) {
   return mesh;
 }
 
-/// 1 + 2x - 3y + 5z
 /// One layer of n × n hexahedra of edge 1 / n, each vertex at `place` of where it is on the plane.
 inline m2m::TetMesh layer_mesh(int n, const std::function<m2m::Point(const m2m::Point&)>& place) {
   m2m::TetMesh mesh;
@@ -142,6 +141,7 @@ inline double wave_at(const m2m::Point& p, const m2m::Point& origin) {
   return std::sin(3 * (p[0] - origin[0])) + std::cos(2 * (p[1] - origin[1]));
 }
 
+/// 1 + 2x - 3y + 5z
 inline double linear_at(const m2m::Point& p) {
   return 1 + 2 * p[0] - 3 * p[1] + 5 * p[2];
 }

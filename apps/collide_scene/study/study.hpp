@@ -21,7 +21,7 @@ struct StudyRow {
   double ns_per_object = 0;
   Answer answer{};
   double false_positive_rate = 0;  ///< part of the pairs that are no pairs of objects
-  bool agrees = true;              ///< the same pairs as with the chosen voxel size
+  bool agrees = true;              ///< the same pairs as the first row that is not refused
   std::string note{};              ///< why the library refused this voxel size; then no numbers
 };
 

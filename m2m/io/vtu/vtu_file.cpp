@@ -214,7 +214,9 @@ std::vector<T> VtuFile::numbers(const VtuArray& array, std::size_t n) const {
     const bool appended = array.format == "appended";
     if (appended && array.offset > appended_.size())
       damaged("array '", name, "' begins at byte ", array.offset, " of ", appended_.size());
-    const auto bytes = vtu_payload(appended ? appended_.substr(array.offset) : array.text,
+    const char* const end = array.text.data() + array.text.size();
+    const std::string_view here(next_text(array.text.data(), end), end);
+    const auto bytes = vtu_payload(appended ? appended_.substr(array.offset) : here,
                                    !appended || appended_is_base64_, encoding_);
     if (!bytes) damaged("array '", name, "' cannot be decoded");
     auto found = converted<T>(array.type, *bytes, encoding_.big_endian);

@@ -137,6 +137,11 @@ TEST_CASE("a PE of another process that misses two frames is shown as busy", "[r
     board.arrived(sample(0, 1000 * frames, 500, 100, 3));
     CHECK(last_frame(board, frames)["busy"][1] == (frames < 3 ? 0 : 100));
   }
+  Board late(*machine);  // PE 0 itself was busy, and has passed nothing on
+  late.arrived(sample(1, 1000, 1000, 50, 5));
+  for (int frames = 1; frames <= 4; ++frames) (void)last_frame(late, frames);
+  late.arrived(sample(0, 4000, 500, 100, 3));
+  CHECK(last_frame(late, 5)["busy"][1] == 0);
 }
 
 TEST_CASE("a heat map that is watched again begins anew", "[runtime][monitor]") {
