@@ -284,7 +284,10 @@ struct Restarting {
     const auto restart = [](const std::string& of) -> tess::Task {
       (void)co_await tess::restart<State>(of);
     };
-    co_await tess::when_all(restart(folder), sleep_long());
+    std::vector<tess::Task> both;
+    both.push_back(restart(folder));
+    both.push_back(sleep_long());
+    co_await tess::when_all(std::move(both));
   }
   static tess::Task restart_late(const std::string& folder) {
     (void)tess::create<Cell>(tess::range(2));
