@@ -6,6 +6,7 @@
 #     says TEXT              whether the job has printed it
 #     says_in_time TEXT      the same, within 20 s, since the machine may be loaded
 #     n_says TEXT            in how many lines
+#     says_times N TEXT      whether it is in N lines within 20 s
 source "$(dirname "${BASH_SOURCE[0]}")/checks.sh"
 program=$1
 if [[ -n ${2:-} ]]; then
@@ -34,7 +35,7 @@ starts() {
     (($(grep '^PE .* pid' "$scratch/out" | sort -u | wc -l) >= n)) && break
     sleep 0.1
   done
-  what="$* ${mpirun[*]:+(2 processes)}"
+  what="$* ${mpirun[*]:+(processes)}"
 }
 says() { grep -q -- "$1" "$scratch/out"; }
 n_says() { grep -c -- "$1" "$scratch/out"; }
@@ -42,6 +43,14 @@ says_in_time() {
   local i
   for ((i = 0; i < 200; ++i)); do
     says "$1" && return 0
+    sleep 0.1
+  done
+  return 1
+}
+says_times() {
+  local i
+  for ((i = 0; i < 200; ++i)); do
+    (($(n_says "$2") >= $1)) && return 0
     sleep 0.1
   done
   return 1

@@ -2,6 +2,7 @@
 //
 //     test_hang cycle    two elements on the first and the last PE wait for each other's replies
 //     test_hang stuck    an entry method on the last PE does not return
+//     test_hang mixed    an entry method on the last PE does not return, and the PE before works
 //     test_hang works    a message travels round all PEs without end
 //     test_hang ends     a message travels round all PEs, and the job ends
 //     test_hang lost     the third message of PE 0 is lost (--audit)
@@ -37,6 +38,11 @@ class Worker : public tess::Group<Worker> {
     if (pe() != last()) return;
     for (;;) std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
+  void work_on() {
+    if (n_++ == 0) announce();
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    group()[pe()].send<&Worker::work_on>();
+  }
   void start_losing() {
     for (int i = 0; i < 5; ++i) group()[last()].send<&Worker::take>();
   }
@@ -66,6 +72,9 @@ int job(int argc, char** argv) {
     const tess::PeId first{0}, last{tess::current_pe().n_pes() - 1};
     if (kind == "stuck") {
       workers.broadcast<&Worker::get_stuck>();
+    } else if (kind == "mixed") {
+      workers.broadcast<&Worker::get_stuck>();
+      workers[tess::PeId{last.value - 1}].send<&Worker::work_on>();
     } else if (kind == "works") {
       workers.broadcast<&Worker::travel>();
     } else if (kind == "lost") {

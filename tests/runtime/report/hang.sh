@@ -58,6 +58,15 @@ if ((${#mpirun[@]} != 0)); then
   kill -USR1 $job
   check "$what: the process reports itself" says_in_time "process 1 reports itself, since process 0 has not answered"
   ends
+  # Process 0 asks again and again whether the job hangs, and process 1 says that it does not.
+  n_pes=3
+  mpirun=("$2" "${mpirun_options[@]}" -n 3)
+  starts $n_pes mixed --hang-report 0.5 --pes $pes
+  for n in 1 2 3; do
+    kill -USR1 "$(pid_of 0)"
+    check "$what: SIGUSR1, time $n" says_times $n "tessera: SIGUSR1: "
+  done
+  ends
 fi
 
 what="ends --audit"
