@@ -66,7 +66,7 @@ same "${coupled[@]}" --pes 3 --slabs 9
 same "${mpirun[@]}" -n 2 "${coupled[@]}" --pes 1 --slabs 4
 same "${coupled[@]}" --sim pes=5,cost=100ns,seed=3 --slabs 7
 # The small box moves a fifth of a cube a step, however short the time is.
-answers ' 60 steps' "${coupled[@]}" --time 1e-6 --pes 2
+answers ' 15 steps' "${coupled[@]}" --time 1e-6 --pes 2
 # Slabs that migrate between transfers: the same bits, and less time where the work is unequal.
 burning=("${coupled[@]}" --time 0.0015 --reaction 1000)
 answers 'hash' "${burning[@]}" --pes 1 --slabs 1
