@@ -61,7 +61,9 @@ BalanceOptions parse_balance(std::string_view given) {
     const std::string_view key = part.substr(0, equals);
     const std::string_view value =
         equals == std::string_view::npos ? std::string_view() : part.substr(equals + 1);
-    if (!keys.insert(first && equals == std::string_view::npos ? "strategy" : key).second)
+    if (!keys.insert(first && equals == std::string_view::npos && key != "report" ? "strategy"
+                                                                                  : key)
+             .second)
       fail(ErrorCode::bad_argument, "--balance: ", key, " is given twice; give it once");
     if (key == "strategy") {
       options.strategy = value;
@@ -113,7 +115,7 @@ void balance::validate(const BalanceOptions& options, std::int32_t n_pes, Strate
          " are given, the run has ", n_pes, " PEs");
   for (const double speed : options.speeds)
     if (!(speed > 0 && speed < 1e9))
-      fail(ErrorCode::bad_argument, "balance speeds: ", speed, " is not above 0");
+      fail(ErrorCode::bad_argument, "balance speeds: ", speed, " is not above 0 and below 1e9");
   if (!fits(options.memory_limit_bytes.size()))
     fail(ErrorCode::bad_argument, "balance memory limits: ", options.memory_limit_bytes.size(),
          " are given, the run has ", n_pes, " PEs");

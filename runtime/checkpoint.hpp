@@ -47,6 +47,7 @@
 #include <cstddef>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace tess {
@@ -54,17 +55,26 @@ namespace tess {
 /// Saves the run in `folder`, which all processes can reach, unless there are buddy copies. Only in
 /// the main coroutine, outside of epochs. Throws Error if the run is not quiet, if the files cannot
 /// be written, or if the folder has checkpoints of another run: of one that is neither this run nor
-/// one that this run, or one before it, went on with by restart(); then the run can go on. Give the options a name first: g++ 12 fails on an aggregate in
-/// a `co_await` expression.
+/// one that this run, or one before it, went on with by restart(); then the run can go on. The state
+/// is packed once all messages are done, as the elements are, and lives until the task ends. Give
+/// the options a name first: g++ 12 fails on an aggregate in a `co_await` expression.
 template <class State>
 [[nodiscard]] Task checkpoint(const std::string& folder, const State& state,
                               const CheckpointOptions& options) {
-  return detail::write_checkpoint(folder, std::string(name_of_type<State>), to_bytes(state),
-                                  options);
+  return detail::write_checkpoint(
+      folder, std::string(name_of_type<State>), [&state] { return to_bytes(state); }, options);
+}
+/// A temporary changes no more: it is packed at once.
+template <class State>
+[[nodiscard]] Task checkpoint(const std::string& folder, const State&& state,
+                              const CheckpointOptions& options) {
+  return detail::write_checkpoint(
+      folder, std::string(name_of_type<State>), [bytes = to_bytes(state)] { return bytes; },
+      options);
 }
 template <class State>
-[[nodiscard]] Task checkpoint(const std::string& folder, const State& state) {
-  return checkpoint(folder, state, CheckpointOptions());
+[[nodiscard]] Task checkpoint(const std::string& folder, State&& state) {
+  return checkpoint(folder, std::forward<State>(state), CheckpointOptions());
 }
 
 /// The latest finished checkpoint in a folder as this process sees it, as its path; empty if there

@@ -42,8 +42,10 @@ std::vector<double> capacities(const Snapshot& s) {
 
 std::vector<double> weights(const Snapshot& s) {
   if (migrating_load(s) > 0) return s.elements.load;
+  const auto n_migrating =
+      std::ranges::count_if(s.elements.migratable, [](auto m) { return m != 0; });
   const double share = static_cast<double>(s.pes.size()) /
-                       static_cast<double>(std::max<std::size_t>(1, s.elements.size()));
+                       static_cast<double>(std::max<std::ptrdiff_t>(1, n_migrating));
   return std::vector<double>(s.elements.size(), share);
 }
 

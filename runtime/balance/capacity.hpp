@@ -10,8 +10,8 @@ namespace tess::balance {
 /// no load, equal shares of 1.
 [[nodiscard]] std::vector<double> capacities(const Snapshot& snapshot);
 
-/// The weight of each element relative to these capacities: its load, or n_pes / n_elements if no
-/// element that migrates has any.
+/// The weight of each element relative to these capacities: its load; or n_pes divided by the number
+/// of elements that migrate, if none of these has any.
 [[nodiscard]] std::vector<double> weights(const Snapshot& snapshot);
 
 }  // namespace tess::balance

@@ -76,7 +76,9 @@ std::optional<std::vector<Item>> LocalPe::change_for(const Item& item, double wa
     room_here += i->memory_bytes;
     there.occupy(*i);
   }
-  if (now_.needs_bytes(item) > room_here || now_.time(net) >= giver.time() || !(net > 0))
+  constexpr double least_gain = 0.005;  // otherwise noise of the loads moves elements
+  if (now_.needs_bytes(item) > room_here || now_.time(net) >= (1 - least_gain) * giver.time() ||
+      !(net > 0))
     return std::nullopt;
   return change;
 }

@@ -3,7 +3,6 @@
 #include "runtime/core/error.hpp"
 #include "runtime/core/hash.hpp"
 
-#include <filesystem>
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
@@ -87,7 +86,7 @@ void write_manifest(const std::string& folder, const std::string& text) {
 
 Manifest read_manifest(const std::string& folder) {
   const std::string path = folder + "/manifest.json";
-  if (!std::filesystem::exists(path))
+  if (!has_file(folder, "manifest.json"))
     fail(ErrorCode::bad_file, path, " is missing: the checkpoint was not finished");
   const std::string text = read_text(folder, "manifest.json");
   try {

@@ -20,12 +20,14 @@ namespace {
 struct Nothing {
   std::uint8_t none = 0;
 };
-/// The collections of a run that is to be restored; there should be none.
+/// The collections of a run that is to be restored, or that it has had: there should be none.
 std::vector<std::string> existing(Pe& pe, const Nothing& /*nothing*/) {
   std::vector<std::string> names;
   for (const HostedCollection* hosted : pe.collections())
     if (static_cast<const Collection*>(hosted)->kind().saving != Saving::skipped)
       names.push_back(hosted->name());
+  if (names.empty() && pe.collection_numbers().made() != CollectionNumbers::Made{})
+    names.push_back("an array, group or section that has ended");
   return names;
 }
 
@@ -132,12 +134,20 @@ std::vector<Reading> plan_reading(const VerifyQuestion& checkpoint,
 
 struct CreateQuestion {
   std::vector<SavedCollection> collections;
+  std::vector<CollectionNumbers::Made> numbers;
+  std::uint32_t places_of_futures = 0;
+  std::uint64_t timers = 0;
   template <class Ar>
   void serialize(Ar& ar) {
-    ar(collections);
+    ar(collections, numbers, places_of_futures, timers);
   }
 };
 Nothing create_here(Pe& pe, const CreateQuestion& question) {
+  // What constructors of restored elements make has no number of the saved run.
+  pe.begin_futures_behind(question.places_of_futures);
+  pe.timers().begin_behind(question.timers);
+  if (const auto here = static_cast<std::size_t>(pe.id().value); here < question.numbers.size())
+    pe.collection_numbers().continue_after(question.numbers[here]);
   for (const SavedCollection& saved : question.collections) {
     const CollectionKind& kind = *CollectionKind::find(saved.key);
     const bool group = kind.members != CollectionKind::Members::of_array;
@@ -169,23 +179,18 @@ struct FinishQuestion {
   std::vector<SavedCollection> collections;
   std::vector<CollectionNumbers::Made> numbers;
   std::vector<SectionId> sections;
-  std::uint32_t places_of_futures = 0;
-  std::uint64_t timers = 0;
   template <class Ar>
   void serialize(Ar& ar) {
-    ar(collections, numbers, sections, places_of_futures, timers);
+    ar(collections, numbers, sections);
   }
 };
 Nothing finish_here(Pe& pe, const FinishQuestion& question) {
-  pe.begin_futures_behind(question.places_of_futures);
-  pe.timers().begin_behind(question.timers);
   std::set<std::uint64_t> alive;
   for (const SavedCollection& saved : question.collections) alive.insert(saved.id.value);
   for (const SectionId id : question.sections) alive.insert(id.value);
   std::vector<CollectionId> ended;
   for (std::size_t creator = 0; creator < question.numbers.size(); ++creator) {
     const PeId id{static_cast<std::int32_t>(creator)};
-    if (id == pe.id()) pe.collection_numbers().continue_after(question.numbers[creator]);
     CollectionNumbers again;
     for (const LateMessages late : {LateMessages::counted, LateMessages::ignored})
       for (auto n = question.numbers[creator][late == LateMessages::ignored ? 1 : 0]; n > 0; --n)
@@ -341,15 +346,15 @@ Task read_checkpoint(std::string folder, std::string state_type, std::vector<std
   if (!chosen) fail(ErrorCode::bad_file, folder, ": no checkpoint in this folder can be used");
   check_plan(*chosen, state_type, pe.n_pes());
 
-  AskAll<&create_here> created(CreateQuestion{chosen->main.collections});
+  AskAll<&create_here> created(CreateQuestion{chosen->main.collections, chosen->main.numbers,
+                                              chosen->main.places_of_futures, chosen->main.timers});
   (void)co_await created;
   AskAll<&restore_here> restored(ReadQuestion{chosen->folder, chosen->readings});
   for (const std::string& error : co_await restored)
     if (!error.empty()) fail(ErrorCode::environment, "the restart failed: ", error);
   co_await wait_until_quiet();
   AskAll<&finish_here> finished(
-      FinishQuestion{chosen->main.collections, chosen->main.numbers, chosen->main.sections,
-                     chosen->main.places_of_futures, chosen->main.timers});
+      FinishQuestion{chosen->main.collections, chosen->main.numbers, chosen->main.sections});
   (void)co_await finished;
   co_await wait_until_quiet();
   AskAll<&thaw_here> thawed(Thaw{});

@@ -234,19 +234,34 @@ std::uint64_t run_here(Pe& /*pe*/, const FolderQuestion& question) {
   }
 }
 
-/// After a restart from another folder: the last checkpoint here that the run wrote before; 0: none.
-Task last_before_restart(std::string folder, const Listing& listing, std::uint64_t run,
-                         std::uint64_t& last) {
-  const auto at = std::ranges::find_if(
-      listing.numbers, [&](std::uint64_t number) { return listing.is_complete(number); });
-  if (at == listing.numbers.end()) co_return;
-  const auto host = static_cast<std::size_t>(
-      std::ranges::find_if(listing.complete_on, [&](const auto& on) { return on.contains(*at); }) -
-      listing.complete_on.begin());
-  const PeId there = listing.hosts.first.at(host);
-  AskAll<&run_here> asked(FolderQuestion{folder_of(folder, *at)}, {there});
-  const std::vector<std::uint64_t> runs = co_await asked;
-  if (runs[static_cast<std::size_t>(there.value)] == run) last = *at;
+/// The run that wrote a checkpoint; 0 if no host has a manifest that can be read.
+Task run_of(std::string folder, const Listing& listing, std::uint64_t number, std::uint64_t& run) {
+  run = 0;
+  for (std::size_t host = 0; host < listing.complete_on.size() && run == 0; ++host) {
+    if (!listing.complete_on[host].contains(number)) continue;
+    const PeId there = listing.hosts.first.at(host);
+    AskAll<&run_here> asked(FolderQuestion{folder_of(folder, number)}, {there});
+    const std::vector<std::uint64_t> runs = co_await asked;
+    run = runs[static_cast<std::size_t>(there.value)];
+  }
+}
+
+/// After a restart from another folder: which checkpoints here the run wrote before. Those whose
+/// manifest cannot be read are passed over, as a restart does.
+Task find_own(std::string folder, const Listing& listing, std::uint64_t run,
+              Runtime::OwnCheckpoints& ours) {
+  std::vector<std::uint64_t> unreadable;
+  for (const std::uint64_t number : listing.numbers) {
+    if (!listing.is_complete(number)) continue;
+    std::uint64_t found = 0;
+    co_await run_of(folder, listing, number, found);
+    if (found == run) {
+      ours.last = listing.numbers.front();
+      ours.refused = std::move(unreadable);
+    }
+    if (found != 0) co_return;
+    unreadable.push_back(number);
+  }
 }
 
 /// Throws Error if the folder has a checkpoint that this run neither wrote nor found at its
@@ -338,7 +353,8 @@ struct Begun {
   std::uint64_t number = 0;
 };
 
-Task save_all(std::string folder, MainPart main, CheckpointOptions options, Begun& begun) {
+Task save_all(std::string folder, MainPart main, std::function<std::vector<std::byte>()> pack,
+              CheckpointOptions options, Begun& begun) {
   Pe& pe = current_pe();
   OwnFrame own;
   const std::uint64_t frame = co_await own;
@@ -350,6 +366,7 @@ Task save_all(std::string folder, MainPart main, CheckpointOptions options, Begu
   for (std::vector<std::string>& lines : co_await census)
     waiting.insert(waiting.end(), lines.begin(), lines.end());
   refuse_unless_quiet(std::move(waiting));
+  main.state = pack();  // not before: other coroutines and timers may have changed it meanwhile
 
   Listing listing;
   if (options.buddy_copies) {
@@ -363,7 +380,7 @@ Task save_all(std::string folder, MainPart main, CheckpointOptions options, Begu
   Runtime::OwnCheckpoints& ours = pe.runtime().own_checkpoints(canonical(folder));
   std::uint64_t& run = pe.runtime().checkpoint_run();
   if (run == 0) run = new_run();
-  if (ours.last == 0) co_await last_before_restart(folder, listing, run, ours.last);
+  if (ours.last == 0) co_await find_own(folder, listing, run, ours);
   require_own(folder, listing, ours);
   Manifest manifest = next_manifest(pe, listing, options);
   const std::string here = folder_of(folder, manifest.number);
@@ -416,19 +433,18 @@ void require_main(const std::string& what) {
   TESS_CHECK(pe.context().epoch.value == 0, what, " is called inside an epoch");
 }
 
-Task write_checkpoint(std::string folder, std::string state_type, std::vector<std::byte> state,
-                      CheckpointOptions options) {
+Task write_checkpoint(std::string folder, std::string state_type,
+                      std::function<std::vector<std::byte>()> pack, CheckpointOptions options) {
   require_main("checkpoint()");
   const OnlyOne only_one(current_pe().runtime());
   TESS_CHECK(!folder.empty(), "checkpoint() to a path without a name: give a folder");
   TESS_CHECK(options.keep >= 1, "keep: ", options.keep, " checkpoints");
   MainPart main;
   main.state_type = std::move(state_type);
-  main.state = std::move(state);
   std::exception_ptr error;
   Begun begun;
   try {
-    co_await save_all(folder, std::move(main), std::move(options), begun);
+    co_await save_all(folder, std::move(main), std::move(pack), std::move(options), begun);
   } catch (const Error&) {
     error = std::current_exception();
   } catch (const std::exception& other) {  // of the file system, or of the memory

@@ -14,6 +14,7 @@
 #include "runtime/task.hpp"
 
 #include <cstddef>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -21,9 +22,11 @@ namespace tess::detail {
 
 struct Listing;
 
-/// `state` is the main coroutine's, of a type with this name.
+/// `pack` packs the state of the main coroutine, of a type with this name; it is called once nothing
+/// is under way.
 [[nodiscard]] Task write_checkpoint(std::string folder, std::string state_type,
-                                    std::vector<std::byte> state, CheckpointOptions options);
+                                    std::function<std::vector<std::byte>()> pack,
+                                    CheckpointOptions options);
 
 /// Lists the checkpoints in a folder as all processes see it.
 [[nodiscard]] Task list_all(std::string folder, Listing& listing);

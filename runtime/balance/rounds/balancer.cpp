@@ -230,13 +230,13 @@ Task Balancer::begin_phase() {
   TESS_CHECK(!running_, "a phase begins while a round runs: await that one first");
   running_ = true;
   co_await attached();
-  co_await forget_all();
+  co_await forget_all(Phase::begins);
   round_is_over();
 }
 
-Task Balancer::forget_all() {
+Task Balancer::forget_all(Phase phase) {
   Future<std::uint64_t> forgotten;
-  group().broadcast<&Balancer::forget>(forgotten.callback());
+  group().broadcast<&Balancer::forget>(phase, forgotten.callback());
   co_await forgotten;
 }
 
@@ -260,7 +260,7 @@ Task Balancer::place_again() {
     co_await round(Others::fixed);
     measured_.round_ends();
   } else {
-    co_await forget_all();
+    co_await forget_all(Phase::begins);
   }
   round_is_over();
 }
@@ -285,7 +285,7 @@ Task Balancer::phase_ends(Others others) {
     co_await round(others);
     measured_.round_ends();
   } else {
-    co_await forget_all();
+    co_await forget_all(Phase::ends);
   }
   round_is_over();
 }
@@ -440,8 +440,11 @@ void Balancer::resume(std::uint32_t round) {
   barrier_.resume(round);
 }
 
-void Balancer::forget(const Callback<std::uint64_t>& done) {
-  measured_.clear();
+void Balancer::forget(Phase phase, const Callback<std::uint64_t>& done) {
+  if (phase == Phase::ends)
+    measured_.pass_phase();
+  else
+    measured_.clear();
   contribute(sum, std::uint64_t{0}, done);
 }
 

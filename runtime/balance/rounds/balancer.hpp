@@ -95,7 +95,9 @@ class Balancer final : public Group<Balancer>, private ElementWatcher {
   void moved();
   void move(const std::vector<Move>& moves);
   void resume(std::uint32_t round);
-  void forget(const Callback<std::uint64_t>& done);
+  /// A phase ends without a round, or begins behind something else.
+  enum class Phase : std::uint8_t { ends, begins };
+  void forget(Phase phase, const Callback<std::uint64_t>& done);
   void sum_past(const Callback<PastLoad>& target);
   void recall(bool interrupted, const Callback<std::uint64_t>& done);
   void prepare(Others others, const Callback<PhaseSums>& target);
@@ -120,7 +122,7 @@ class Balancer final : public Group<Balancer>, private ElementWatcher {
 
   void watch(Collection& array);
   Task attached();
-  Task forget_all();
+  Task forget_all(Phase phase);
   Task round(Others others);
   void begin_round();
   void end_round();

@@ -130,6 +130,16 @@ void Measured::clear() {
     if (element != nullptr) Collection::record_of(*element)->load.clear();
 }
 
+void Measured::pass_phase() {
+  if (array_ != nullptr)
+    for (Element* element : array_->elements()) {
+      if (element == nullptr) continue;
+      BalanceRecord& record = *Collection::record_of(*element);
+      record.past = {record.load.known() ? meter_.seconds(record.load.ticks) : -1, -1};
+    }
+  clear();
+}
+
 PastLoad Measured::past() const {
   PastLoad sum{0, 0};
   if (array_ == nullptr) return sum;

@@ -39,6 +39,9 @@ class Measured {
   void round_ends() { begin_phase(); }
   /// Begins a new phase and discards earlier measurements.
   void clear();
+  /// The same where a phase ends without a report: a checkpoint has its loads as those of the last
+  /// phase.
+  void pass_phase();
 
   /// The loads that a checkpoint had of the elements here, in seconds.
   [[nodiscard]] PastLoad past() const;

@@ -2,6 +2,8 @@
 #include "runtime/checkpoint.hpp"
 
 #include "runtime/machine/threads.hpp"
+#include "runtime/timer.hpp"
+#include "runtime/when.hpp"
 #include "tests/runtime/checkpoint/world.hpp"
 #include "tests/support/adversarial.hpp"
 #include "tests/support/catch.hpp"
@@ -123,4 +125,138 @@ TEST_CASE("a run restarts on other threads", "[runtime][checkpoint]") {
     REQUIRE(tess::run(next, [&] { return continue_from(folder, n_steps, log); }) == 0);
     CHECK(log == expected);
   }
+}
+
+namespace {
+
+class Counted : public tess::Chare<Counted> {
+ public:
+  void step(tess::Callback<int> target) { contribute(tess::sum, ++n_, std::move(target)); }
+  void report(tess::Callback<int> target) { contribute(tess::sum, n_, std::move(target)); }
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(n_);
+  }
+
+ private:
+  int n_ = 0;
+};
+
+struct Totals {
+  tess::ArrayProxy<Counted> cells;
+  int total = 0;
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(cells, total);
+  }
+
+  tess::Task step() {
+    tess::Future<int> sum;
+    cells.broadcast<&Counted::step>(sum.callback());
+    const int found = co_await sum;
+    total += found;
+  }
+  static tess::Task save_beside_a_step(const std::string& folder) {
+    Totals state;
+    state.cells = tess::create<Counted>(tess::range(4));
+    tess::Task step = state.step();
+    co_await tess::checkpoint(folder, state);
+    co_await step;
+  }
+  static tess::Task restart(const std::string& folder, int& total, int& in_cells) {
+    const auto state = co_await tess::restart<Totals>(folder);
+    tess::Future<int> sum;
+    state.cells.broadcast<&Counted::report>(sum.callback());
+    in_cells = co_await sum;
+    total = state.total;
+  }
+};
+
+/// Each member makes an array of its own and a timer where it is constructed.
+class Maker : public tess::Group<Maker> {
+ public:
+  Maker() : cells_(tess::create<Counted>(tess::range(3))) {
+    tick_ = tess::every(std::chrono::milliseconds(1), [this] { ++n_ticks_; });
+  }
+  void step(tess::Callback<int> target) { cells_.broadcast<&Counted::step>(std::move(target)); }
+  void stop(tess::Timer of_before) {
+    of_before.cancel();
+    n_ticks_ = 0;
+  }
+  [[nodiscard]] int n_ticks() const { return n_ticks_; }
+  void end() { tick_.cancel(); }
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(cells_);
+  }
+
+ private:
+  tess::ArrayProxy<Counted> cells_;
+  tess::Timer tick_;
+  int n_ticks_ = 0;
+};
+
+struct Made {
+  tess::GroupProxy<Maker> makers;
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(makers);
+  }
+
+  static tess::Task save(const std::string& folder) {
+    Made state;
+    co_await tess::epoch([&] { state.makers = tess::create_group<Maker>(); });
+    co_await state.step();
+    co_await tess::checkpoint(folder, state);
+    state.makers.broadcast<&Maker::end>();
+  }
+  static tess::Task restart(const std::string& folder, int& sum, int& n_ticks) {
+    auto state = co_await tess::restart<Made>(folder);
+    co_await state.step();
+    sum = state.sum;
+    // A timer of the saved run has the number 1 on its PE.
+    state.makers[tess::PeId{1}].send<&Maker::stop>(tess::Timer(tess::PeId{1}, 1));
+    co_await tess::sleep(std::chrono::milliseconds(20));
+    n_ticks = co_await state.makers[tess::PeId{1}].ask<&Maker::n_ticks>();
+    state.makers.broadcast<&Maker::end>();
+  }
+  tess::Task step() {
+    for (std::int32_t pe = 0; pe < tess::n_pes(); ++pe) {
+      tess::Future<int> one;
+      makers[tess::PeId{pe}].send<&Maker::step>(one.callback());
+      sum += co_await one;
+    }
+  }
+  int sum = 0;
+};
+
+}  // namespace
+
+TEST_CASE("a checkpoint has the state as it is when the elements are saved",
+          "[runtime][checkpoint]") {
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    INFO("seed " << seed);
+    const tess::test::Scratch scratch;
+    const std::string folder = scratch.path("saved");
+    auto setup = quiet_machine(3, seed);
+    REQUIRE(tess::run(setup, [&] { return Totals::save_beside_a_step(folder); }) == 0);
+    int total = 0, in_cells = 0;
+    auto next = quiet_machine(2, seed);
+    REQUIRE(tess::run(next, [&] { return Totals::restart(folder, total, in_cells); }) == 0);
+    CHECK(total == 4);
+    CHECK(in_cells == 4);
+  }
+}
+
+TEST_CASE("what constructors make in a restart has no number of the saved run",
+          "[runtime][checkpoint]") {
+  const tess::test::Scratch scratch;
+  const std::string folder = scratch.path("saved");
+  auto setup = quiet_machine(3, 0);
+  REQUIRE(tess::run(setup, [&] { return Made::save(folder); }) == 0);
+  int sum = 0, n_ticks = 0;
+  auto next = quiet_machine(3, 0);
+  REQUIRE(tess::run(next, [&] { return Made::restart(folder, sum, n_ticks); }) == 0);
+  CHECK(sum == 3 * 3 * 2);
+  CHECK(n_ticks > 3);
 }

@@ -99,10 +99,15 @@ TEST_CASE("a run with two folders goes on with both after a restart from one",
   run(again);
   CHECK(again.refused.empty());
   CHECK(tess::detail::numbers_in(rarely) == Numbers{4, 3});
+  std::ofstream(tess::detail::folder_of(rarely, 4) + "/manifest.json") << "{";
+  Job past_damage{.from = often, .folder = often, .second = rarely};
+  run(past_damage);
+  CHECK(past_damage.refused.empty());
+  CHECK(tess::latest_checkpoint(rarely) == tess::detail::folder_of(rarely, 5));
 
   Job other{.from = "", .folder = scratch.path("other"), .second = rarely};
   run(other);
-  CHECK(other.refused.find("rarely/checkpoint-000004 is a checkpoint of another run") !=
+  CHECK(other.refused.find("rarely/checkpoint-000005 is a checkpoint of another run") !=
         std::string::npos);
 }
 

@@ -274,6 +274,10 @@ struct Restarting {
     const tess::Future<int> made;
     (void)co_await tess::restart<State>(folder);
   }
+  static tess::Task restart_after_an_array(const std::string& folder) {
+    co_await tess::epoch([] { tess::create<Cell>(tess::range(2)).destroy(); });
+    (void)co_await tess::restart<State>(folder);
+  }
   static tess::Task restart_with_timer(const std::string& folder) {
     (void)tess::after(std::chrono::hours(1), [] {});
     (void)co_await tess::restart<State>(folder);
@@ -325,6 +329,10 @@ TEST_CASE("a group restarts on the same number of PEs, or its class says how",
   future.options.report = [&report](const std::string& line) { report = line; };
   CHECK(tess::run(future, [&] { return Restarting::restart_with_future(folder); }) == 2);
   CHECK(has(report, "restart() comes first, but this run has already made a future"));
+  auto array = tess::test::adversarial(3, 3);
+  array.options.report = [&report](const std::string& line) { report = line; };
+  CHECK(tess::run(array, [&] { return Restarting::restart_after_an_array(folder); }) == 2);
+  CHECK(has(report, "already made an array, group or section that has ended"));
   auto timer = tess::test::adversarial(3, 3);
   timer.options.report = [&report](const std::string& line) { report = line; };
   CHECK(tess::run(timer, [&] { return Restarting::restart_with_timer(folder); }) == 2);
