@@ -129,7 +129,7 @@ TEST_CASE("a run restarts on other threads", "[runtime][checkpoint]") {
 
 namespace {
 
-class Counted : public tess::Chare<Counted> {
+class CountsSteps : public tess::Chare<CountsSteps> {
  public:
   void step(tess::Callback<int> target) { contribute(tess::sum, ++n_, std::move(target)); }
   void report(tess::Callback<int> target) { contribute(tess::sum, n_, std::move(target)); }
@@ -143,7 +143,7 @@ class Counted : public tess::Chare<Counted> {
 };
 
 struct Totals {
-  tess::ArrayProxy<Counted> cells;
+  tess::ArrayProxy<CountsSteps> cells;
   int total = 0;
   template <class Ar>
   void serialize(Ar& ar) {
@@ -152,13 +152,13 @@ struct Totals {
 
   tess::Task step() {
     tess::Future<int> sum;
-    cells.broadcast<&Counted::step>(sum.callback());
+    cells.broadcast<&CountsSteps::step>(sum.callback());
     const int found = co_await sum;
     total += found;
   }
   static tess::Task save_beside_a_step(const std::string& folder) {
     Totals state;
-    state.cells = tess::create<Counted>(tess::range(4));
+    state.cells = tess::create<CountsSteps>(tess::range(4));
     tess::Task step = state.step();
     co_await tess::checkpoint(folder, state);
     co_await step;
@@ -166,19 +166,19 @@ struct Totals {
   static tess::Task restart(const std::string& folder, int& total, int& in_cells) {
     const auto state = co_await tess::restart<Totals>(folder);
     tess::Future<int> sum;
-    state.cells.broadcast<&Counted::report>(sum.callback());
+    state.cells.broadcast<&CountsSteps::report>(sum.callback());
     in_cells = co_await sum;
     total = state.total;
   }
 };
 
 /// Each member makes an array of its own and a timer where it is constructed.
-class Maker : public tess::Group<Maker> {
+class MakesAtOnce : public tess::Group<MakesAtOnce> {
  public:
-  Maker() : cells_(tess::create<Counted>(tess::range(3))) {
+  MakesAtOnce() : cells_(tess::create<CountsSteps>(tess::range(3))) {
     tick_ = tess::every(std::chrono::milliseconds(1), [this] { ++n_ticks_; });
   }
-  void step(tess::Callback<int> target) { cells_.broadcast<&Counted::step>(std::move(target)); }
+  void step(tess::Callback<int> target) { cells_.broadcast<&CountsSteps::step>(std::move(target)); }
   void stop(tess::Timer of_before) {
     of_before.cancel();
     n_ticks_ = 0;
@@ -191,13 +191,13 @@ class Maker : public tess::Group<Maker> {
   }
 
  private:
-  tess::ArrayProxy<Counted> cells_;
+  tess::ArrayProxy<CountsSteps> cells_;
   tess::Timer tick_;
   int n_ticks_ = 0;
 };
 
 struct Made {
-  tess::GroupProxy<Maker> makers;
+  tess::GroupProxy<MakesAtOnce> makers;
   template <class Ar>
   void serialize(Ar& ar) {
     ar(makers);
@@ -205,25 +205,25 @@ struct Made {
 
   static tess::Task save(const std::string& folder) {
     Made state;
-    co_await tess::epoch([&] { state.makers = tess::create_group<Maker>(); });
+    co_await tess::epoch([&] { state.makers = tess::create_group<MakesAtOnce>(); });
     co_await state.step();
     co_await tess::checkpoint(folder, state);
-    state.makers.broadcast<&Maker::end>();
+    state.makers.broadcast<&MakesAtOnce::end>();
   }
   static tess::Task restart(const std::string& folder, int& sum, int& n_ticks) {
     auto state = co_await tess::restart<Made>(folder);
     co_await state.step();
     sum = state.sum;
     // A timer of the saved run has the number 1 on its PE.
-    state.makers[tess::PeId{1}].send<&Maker::stop>(tess::Timer(tess::PeId{1}, 1));
+    state.makers[tess::PeId{1}].send<&MakesAtOnce::stop>(tess::Timer(tess::PeId{1}, 1));
     co_await tess::sleep(std::chrono::milliseconds(20));
-    n_ticks = co_await state.makers[tess::PeId{1}].ask<&Maker::n_ticks>();
-    state.makers.broadcast<&Maker::end>();
+    n_ticks = co_await state.makers[tess::PeId{1}].ask<&MakesAtOnce::n_ticks>();
+    state.makers.broadcast<&MakesAtOnce::end>();
   }
   tess::Task step() {
     for (std::int32_t pe = 0; pe < tess::n_pes(); ++pe) {
       tess::Future<int> one;
-      makers[tess::PeId{pe}].send<&Maker::step>(one.callback());
+      makers[tess::PeId{pe}].send<&MakesAtOnce::step>(one.callback());
       sum += co_await one;
     }
   }
