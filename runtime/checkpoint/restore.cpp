@@ -27,7 +27,7 @@ std::vector<std::string> existing(Pe& pe, const Nothing& /*nothing*/) {
     if (static_cast<const Collection*>(hosted)->kind().saving != Saving::skipped)
       names.push_back(hosted->name());
   if (names.empty() && pe.collection_numbers().made() != CollectionNumbers::Made{})
-    names.push_back("an array, group or section that has ended");
+    names.emplace_back("an array, group or section that has ended");
   return names;
 }
 

@@ -257,7 +257,7 @@ Task find_own(std::string folder, const Listing& listing, std::uint64_t run,
     co_await run_of(folder, listing, number, found);
     if (found == run) {
       ours.last = listing.numbers.front();
-      ours.refused = std::move(unreadable);
+      ours.refused = unreadable;
     }
     if (found != 0) co_return;
     unreadable.push_back(number);
