@@ -31,10 +31,10 @@
 //
 // Not saved: futures, timers, balancers. A state with a future does not compile. A callback to a
 // future may be left over in the state or in an element; after a restart a call of it ends the run
-// with an error, so make the future again and send its new callback. No future may exist before
-// restart(). Call start_balancing() again;
-// the loads of balanced elements are saved, and BalancerProxy::place_again() uses them. Process
-// groups and read-only data cannot be saved; destroy() them before.
+// with an error, so make the future again and send its new callback. Before restart() there is no
+// future, no timer and no array yet, nor one that has ended. Call start_balancing() again; the loads
+// of balanced elements are saved, and BalancerProxy::place_again() uses them. Process groups and
+// read-only data cannot be saved; destroy() them before.
 #pragma once
 
 #include "runtime/checkpoint/restore.hpp"
