@@ -161,8 +161,8 @@ TEST_CASE("a checkpoint names the class that cannot be saved", "[runtime][checkp
 namespace {
 
 tess::Task save_twice_at_once(std::string folder, std::string& error) {
+  const tess::Task first = tess::checkpoint(folder, 1);  // it goes on when this coroutine has ended
   const int state = 1;
-  const tess::Task first = tess::checkpoint(folder, state);
   try {
     co_await tess::checkpoint(folder, state);
   } catch (const tess::Error& wrong) {
