@@ -175,6 +175,12 @@ void CommandLine::refuse_without(const std::string& what,
                  "; give one, or leave it out");
 }
 
+void CommandLine::refuse_beside(const std::string& other,
+                                std::initializer_list<const char*> names) const {
+  for (const char* name : names)
+    if (is_given(name)) refuse_together(name, other);
+}
+
 std::string CommandLine::value(const std::string& name) const {
   CLI::Option* const option = app_->get_option(name);
   if (option->get_items_expected_max() == 0) return is_given(name) ? "yes" : "no";  // a flag

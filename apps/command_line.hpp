@@ -73,6 +73,8 @@ class CommandLine {
   [[nodiscard]] bool is_given(const std::string& name) const;
   /// Throws tess::Error (bad_argument) if one of the options is given, since it needs `what`.
   void refuse_without(const std::string& what, std::initializer_list<const char*> names) const;
+  /// Throws refuse_together() if one of the options is given, since `other` leaves it unused.
+  void refuse_beside(const std::string& other, std::initializer_list<const char*> names) const;
   /// The value of an option as text, whether it is given or the default: equal for equal values.
   [[nodiscard]] std::string value(const std::string& name) const;
 

@@ -61,9 +61,9 @@ BalanceOptions parse_balance(std::string_view given) {
     const std::string_view key = part.substr(0, equals);
     const std::string_view value =
         equals == std::string_view::npos ? std::string_view() : part.substr(equals + 1);
-    if (!keys.insert(first && equals == std::string_view::npos && key != "report" ? "strategy"
-                                                                                  : key)
-             .second)
+    const bool is_word = equals == std::string_view::npos;
+    const bool is_strategy = first && is_word && key != "report";
+    if (!keys.insert(is_strategy ? "strategy" : key).second)
       fail(ErrorCode::bad_argument, "--balance: ", key, " is given twice; give it once");
     if (key == "strategy") {
       options.strategy = value;
@@ -77,9 +77,9 @@ BalanceOptions parse_balance(std::string_view given) {
       options.window = whole(key, value);
     } else if (key == "seed") {
       options.seed = whole(key, value);
-    } else if (key == "report" && equals == std::string_view::npos) {
+    } else if (key == "report" && is_word) {
       options.lines = RoundLines::print;
-    } else if (first && equals == std::string_view::npos) {
+    } else if (is_strategy) {
       options.strategy = key;
     } else {
       fail(ErrorCode::bad_argument, "--balance: unknown key ", key == "report" ? part : key,

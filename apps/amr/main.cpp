@@ -133,12 +133,12 @@ int start(tess::Setup& setup, int argc, char** argv) {
   if ((options.study || options.stability) && settings.checkpoints.are_used())
     tess::fail(tess::ErrorCode::bad_argument,
                "--checkpoint and --restart: not for --study and --stability");
-  if (options.study && line.is_given("--order")) apps::refuse_together("--order", "--study");
+  if (options.study) line.refuse_beside("--study", {"--order"});
   if (options.stability)  // its cases have their own problems
-    for (const char* name :
-         {"--max-level", "--least-level", "--cells", "--order", "--cfl", "--time", "--steps",
-          "--width", "--velocity", "--centre", "--refine", "--change-every", "--balance", "--json"})
-      if (line.is_given(name)) apps::refuse_together(name, "--stability");
+    line.refuse_beside(
+        "--stability",
+        {"--max-level", "--least-level", "--cells", "--order", "--cfl", "--time", "--steps",
+         "--width", "--velocity", "--centre", "--refine", "--change-every", "--balance", "--json"});
   options.files.check(options.study, setup.options.trace);
   return tess::run(setup,
                    [&] { return options.stability ? check_stability(options) : run_all(options); });

@@ -98,8 +98,7 @@ int main(int argc, char** argv) {
     if (!line.parse(argc, argv)) return 0;
     if (options.quick && !repeat.is_given()) options.repeat = 1;
     if (!calibrated.empty())
-      for (const char* other : {"NAME", "--repeat", "--list", "--json"})
-        if (line.is_given(other)) apps::refuse_together(other, "--calibrate " + calibrated);
+      line.refuse_beside("--calibrate " + calibrated, {"NAME", "--repeat", "--list", "--json"});
     plot::require_writable("--json", options.json);
 
     bench::Bench bench(options, command_line, *setup.machine);

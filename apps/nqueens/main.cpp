@@ -107,8 +107,7 @@ int run(tess::Setup& setup, int argc, char** argv) {
   problem.grain = options.grain.value_or(default_grain(problem.n));
   if (!options.checkpoints.restarts()) check_grain(problem);  // else N is in the checkpoint
   if (options.study)  // it tries all grains and both forms, and counts
-    for (const char* name : {"--grain", "--form", "--first"})
-      if (line.is_given(name)) apps::refuse_together(name, "--study");
+    line.refuse_beside("--study", {"--grain", "--form", "--first"});
   if (problem.first && options.expected.value_or(0) > 0)
     tess::fail(tess::ErrorCode::bad_argument, "--expect ", *options.expected,
                ": --first does not count; give --expect 0 if there is none, or leave one out");

@@ -1,5 +1,7 @@
 #include "runtime/balance/local_pe.hpp"
 
+#include "runtime/balance/metrics.hpp"
+
 #include <algorithm>
 #include <limits>
 
@@ -76,7 +78,6 @@ std::optional<std::vector<Item>> LocalPe::change_for(const Item& item, double wa
     room_here += i->memory_bytes;
     there.occupy(*i);
   }
-  constexpr double least_gain = 0.005;  // otherwise noise of the loads moves elements
   if (now_.needs_bytes(item) > room_here || now_.time(net) >= (1 - least_gain) * giver.time() ||
       !(net > 0))
     return std::nullopt;

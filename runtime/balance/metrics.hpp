@@ -12,6 +12,9 @@ struct Metrics {
   std::uint64_t external_bytes = 0;  ///< bytes of edges between different PEs
 };
 
+/// Improvements of the slowest PE by a smaller part may be noise of the loads: no element moves.
+inline constexpr double least_gain = 0.005;
+
 /// The seconds that every PE would need if work could be divided freely: (work + background ×
 /// speed) / speed, summed first.
 [[nodiscard]] double average_time(const Snapshot& snapshot);

@@ -14,8 +14,7 @@
 namespace tess::detail {
 namespace {
 
-constexpr std::size_t most_past = 600;     // frames and rounds: five minutes
-constexpr std::size_t most_pictures = 16;  // names
+constexpr std::size_t most_past = 600;  // frames and rounds: five minutes
 constexpr std::size_t most_pixels = 1 << 20;
 
 /// Values as text for JSON: the grey levels between `least` and `most`.

@@ -32,6 +32,8 @@ struct Event {
 
 class Board {
  public:
+  static constexpr std::size_t most_pictures = 16;  ///< names
+
   explicit Board(const Machine& machine);
 
   void arrived(PeSample sample);

@@ -163,9 +163,9 @@ class Monitor::Loop {
   void draw(const PicturePart& part) {
     const std::lock_guard lock(mutex_);
     if (!board_->draw(part) && !std::exchange(said_left_out_, true))
-      runtime_.error_line(
-          text("tessera: show(\"", part.name,
-               "\"): the page has its 16 pictures; this and later ones are left out"));
+      runtime_.error_line(text("tessera: show(\"", part.name, "\"): the page has its ",
+                               Board::most_pictures,
+                               " pictures; this and later ones are left out"));
   }
   void note(const BalanceNote& note) {
     const std::lock_guard lock(mutex_);

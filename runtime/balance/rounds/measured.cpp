@@ -59,6 +59,10 @@ void Measured::begin_phase() {
   in_balanced_before_ = meter_.in_balanced();
 }
 
+void Measured::keep_as_past(BalanceRecord& record) const {
+  record.past = {record.load.known() ? meter_.seconds(record.load.ticks) : -1, -1};
+}
+
 void Measured::add(Element& element, std::uint64_t round, PeReport& report) {
   BalanceRecord& record = *Collection::record_of(element);
   record.position = reported_.size();
@@ -69,7 +73,7 @@ void Measured::add(Element& element, std::uint64_t round, PeReport& report) {
     record.size_bytes = array_->packed_bytes(element);
   report.keys.push_back({array_->id(), key});
   report.seconds.push_back(meter_.seconds(record.load.ticks));
-  record.past = {record.load.known() ? report.seconds.back() : -1, -1};
+  keep_as_past(record);
   report.measured.push_back(record.load.known() ? 1 : 0);
   report.migratable.push_back(array_->migratable() ? 1 : 0);
   report.size_bytes.push_back(record.size_bytes);
@@ -134,8 +138,7 @@ void Measured::pass_phase() {
   if (array_ != nullptr)
     for (Element* element : array_->elements()) {
       if (element == nullptr) continue;
-      BalanceRecord& record = *Collection::record_of(*element);
-      record.past = {record.load.known() ? meter_.seconds(record.load.ticks) : -1, -1};
+      keep_as_past(*Collection::record_of(*element));
     }
   clear();
 }

@@ -58,6 +58,8 @@ class Measured {
 
  private:
   void add(Element& element, std::uint64_t round, PeReport& report);
+  /// Its load is that of the last phase to a checkpoint.
+  void keep_as_past(BalanceRecord& record) const;
   [[nodiscard]] double busy_outside(Others others) const;
   void begin_phase();
 

@@ -95,7 +95,6 @@ Assignment refine_from(const Snapshot& s, Assignment start, double tolerance) {
 }
 
 Assignment refine(const Snapshot& s, double tolerance) {
-  constexpr double least_gain = 0.005;  // otherwise noise of the loads moves elements
   Assignment better = refine_from(s, s.elements.pe, tolerance);
   const double now = measure(s, s.elements.pe).max_over_average;
   return measure(s, better).max_over_average <= (1 - least_gain) * now ? better : s.elements.pe;

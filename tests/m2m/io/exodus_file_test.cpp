@@ -3,6 +3,7 @@
 #include "m2m/kuhn.hpp"
 #include "m2m/read_mesh.hpp"
 #include "m2m/write_exodus.hpp"
+#include "tests/m2m/io/new_exodus.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/scratch.hpp"
 
@@ -23,9 +24,7 @@ namespace {
 /// `change` gets the open file, in NetCDF's define mode.
 std::string two_tets(const Scratch& scratch, int mode, const std::function<void(int id)>& change) {
   const std::string path = scratch.path("two.exo");
-  int compute = 8, stored = 8;
-  const int id = ex_create(path.c_str(), EX_CLOBBER | mode, &compute, &stored);
-  REQUIRE(id >= 0);
+  const int id = tess::test::new_exodus(path, mode);
   const std::array<double, 5> x{0, 1, 0, 0, 1}, y{0, 0, 1, 0, 1}, z{0, 0, 0, 1, 1};
   ex_put_init(id, "two", 3, 5, 2, 2, 1, 1);
   ex_put_coord(id, x.data(), y.data(), z.data());
@@ -109,9 +108,8 @@ TEST_CASE("a type of elements of more than 32 characters is refused", "[m2m][io]
 TEST_CASE("an ExodusII file in NetCDF-3 has no more nodes than bytes", "[m2m][io]") {
   const Scratch scratch;
   const std::string path = scratch.path("claims.exo");
-  int compute = 8, stored = 8, dimension = 0;
-  const int id = ex_create(path.c_str(), EX_CLOBBER, &compute, &stored);
-  REQUIRE(id >= 0);
+  int dimension = 0;
+  const int id = tess::test::new_exodus(path);
   (void)nc_redef(id);
   for (const auto& [name, length] :
        {std::pair{"num_dim", 3U}, {"num_nodes", 100'000U}, {"num_elem", 1U}, {"num_el_blk", 1U}})
@@ -143,9 +141,7 @@ TEST_CASE("polygons and springs of ExodusII are skipped, and solids in one list 
           "[m2m][io]") {
   const Scratch scratch;
   const std::string path = scratch.path("polygons.exo");
-  int compute = 8, stored = 8;
-  const int id = ex_create(path.c_str(), EX_CLOBBER, &compute, &stored);
-  REQUIRE(id >= 0);
+  const int id = tess::test::new_exodus(path);
   const std::array<double, 5> x{0, 1, 0, 0, 1}, y{0, 0, 1, 0, 1}, z{0, 0, 0, 1, 1};
   ex_put_init(id, "polygons", 3, 5, 3, 3, 0, 0);
   ex_put_coord(id, x.data(), y.data(), z.data());

@@ -8,6 +8,7 @@
 #include "tests/m2m/field_values.hpp"
 #include "tests/m2m/io/damage.hpp"
 #include "tests/m2m/io/gmsh_text.hpp"
+#include "tests/m2m/io/new_exodus.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/shared_data.hpp"
 #include "tests/support/waits_for_turn.hpp"
@@ -93,9 +94,7 @@ std::vector<std::pair<int, std::vector<double>>> rows_of(const Field& field, int
 /// and `q`, the second missing in block 5.
 std::string solids_with_variables(const Scratch& scratch) {
   const std::string path = scratch.path("solids.exo");
-  int compute = 8, stored = 8;
-  const int id = ex_create(path.c_str(), EX_CLOBBER, &compute, &stored);
-  REQUIRE(id >= 0);
+  const int id = tess::test::new_exodus(path);
   const std::array<double, 9> x{0, 1, 1, 0, 0, 1, 1, 0, 2}, y{0, 0, 1, 1, 0, 0, 1, 1, 0},
       z{0, 0, 0, 0, 1, 1, 1, 1, 0};
   ex_put_init(id, "solids", 3, 9, 3, 3, 0, 0);
@@ -285,9 +284,7 @@ TEST_CASE("a variable without values, or of other dimensions than ExodusII defin
           "[m2m][io]") {
   const Scratch scratch;
   const std::string path = scratch.path("vector.exo");
-  int compute = 8, stored = 8;
-  const int id = ex_create(path.c_str(), EX_CLOBBER | EX_NETCDF4, &compute, &stored);
-  REQUIRE(id >= 0);
+  const int id = tess::test::new_exodus(path, EX_NETCDF4);
   const std::array<double, 4> x{0, 1, 0, 0}, y{0, 0, 1, 0}, z{0, 0, 0, 1};
   const std::array<int, 4> vertices{1, 2, 3, 4};
   ex_put_init(id, "one", 3, 4, 1, 1, 0, 0);

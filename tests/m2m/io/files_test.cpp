@@ -4,6 +4,7 @@
 #include "m2m/write_exodus.hpp"
 #include "tests/m2m/io/damage.hpp"
 #include "tests/m2m/io/gmsh_text.hpp"
+#include "tests/m2m/io/new_exodus.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/scratch.hpp"
 #include "tests/support/shared_data.hpp"
@@ -38,9 +39,7 @@ TetMesh grouped_mesh() {
 /// triangles and bars, with side sets of both.
 std::string mixed_file(const Scratch& scratch, const char* tet_type, int n_tet_vertices = 4) {
   const std::string path = scratch.path("mixed.exo");
-  int compute = 8, stored = 8;
-  const int id = ex_create(path.c_str(), EX_CLOBBER, &compute, &stored);
-  REQUIRE(id >= 0);
+  const int id = tess::test::new_exodus(path);
   const std::array<double, 5> x{0, 1, 0, 0, 1}, y{0, 0, 1, 0, 1}, z{0, 0, 0, 1, 1};
   ex_put_init(id, "mixed", 3, 5, 7, 4, 1, 2);
   ex_put_coord(id, x.data(), y.data(), z.data());
@@ -201,9 +200,7 @@ TEST_CASE("hexahedra, wedges and pyramids of ExodusII are split, and side sets f
   // A pyramid on a cube, a wedge beside it, and a tetrahedron.
   const Scratch scratch;
   const std::string path = scratch.path("solids.exo");
-  int compute = 8, stored = 8;
-  const int id = ex_create(path.c_str(), EX_CLOBBER, &compute, &stored);
-  REQUIRE(id >= 0);
+  const int id = tess::test::new_exodus(path);
   const std::array<double, 12> x{0, 1, 1, 0, 0, 1, 1, 0, 0.5, 2, 2, 3};
   const std::array<double, 12> y{0, 0, 1, 1, 0, 0, 1, 1, 0.5, 0, 0, 0};
   const std::array<double, 12> z{0, 0, 0, 0, 1, 1, 1, 1, 2, 0, 1, 0};
@@ -329,9 +326,7 @@ TEST_CASE(
 TEST_CASE("a NetCDF-4 file is read, and a truncated one is refused", "[m2m][io]") {
   const Scratch scratch;
   const std::string path = scratch.path("four.exo");
-  int compute = 8, stored = 8;
-  const int id = ex_create(path.c_str(), EX_CLOBBER | EX_NETCDF4, &compute, &stored);
-  REQUIRE(id >= 0);
+  const int id = tess::test::new_exodus(path, EX_NETCDF4);
   const std::array<double, 4> x{0, 1, 0, 0}, y{0, 0, 1, 0}, z{0, 0, 0, 1};
   const std::array<int, 4> vertices{1, 2, 3, 4};
   ex_put_init(id, "one", 3, 4, 1, 1, 0, 0);
