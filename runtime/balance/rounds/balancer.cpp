@@ -54,7 +54,8 @@ Balancer::Balancer(const Plan& plan)
     : plan_(plan),
       barrier_(current_pe(), *constructing_collection(current_pe()), plan.coordinator,
                group()[plan.coordinator].target<&Balancer::reached>()),
-      measured_(current_pe(), plan.indices) {
+      measured_(current_pe(), plan.indices,
+                plan.speeds.empty() ? 1 : plan.speeds[slot(current_pe().id())]) {
   Pe& pe = current_pe();
   if (plan_.when == BalanceWhen::periodic) constructing_collection(pe)->expedite_reductions();
   // Immediately if the array is known: messages sent after start_balancing() arrive later.
@@ -414,12 +415,8 @@ Task Balancer::distributed_round(Others others) {
   coordinator_->record_distributed(std::move(round));
 }
 
-double Balancer::speed() const {
-  return plan_.speeds.empty() ? 1 : plan_.speeds[slot(pe())];
-}
-
 void Balancer::sum_up(Others others, const Callback<PhaseSums>& target) {
-  contribute(MergeSums{}, measured_.sums(speed(), others), target);
+  contribute(MergeSums{}, measured_.sums(others), target);
 }
 
 void Balancer::collect(Others others, const Callback<std::vector<PeReport>>& target) {
@@ -458,11 +455,11 @@ void Balancer::recall(bool interrupted, const Callback<std::uint64_t>& done) {
 
 void Balancer::prepare(Others others, const Callback<PhaseSums>& target) {
   ++n_rounds_seen_;
-  const PhaseSums before = measured_.sums(speed(), others);
+  const PhaseSums before = measured_.sums(others);
   const PeReport report = measured_.report(n_collected_++, others);
   const std::uint64_t limit =
       plan_.memory_limit_bytes.empty() ? 0 : plan_.memory_limit_bytes[slot(pe())];
-  plan_.exchange.local().hold(report, speed(), limit);
+  plan_.exchange.local().hold(report, measured_.speed(), limit);
   outcome_ = {};
   outcome_.n_elements = report.keys.size();
   contribute(MergeSums{}, before, target);

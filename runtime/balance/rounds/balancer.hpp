@@ -131,7 +131,6 @@ class Balancer final : public Group<Balancer>, private ElementWatcher {
   [[nodiscard]] std::vector<std::vector<Move>> decide(const std::vector<PeReport>& reports);
   Task central_round(Others others);
   Task distributed_round(Others others);
-  [[nodiscard]] double speed() const;
   void pass(Element& element);
   void begin_if_ready();
   void alarm();

@@ -31,6 +31,7 @@ void Measured::entered(Element& element) {
   BalanceRecord& record = Collection::make_record(element);
   if (Collection::never_ran(element)) record.load.since = LoadRecord::Since::construction;
   record.load.of_pe = &in_elements_;
+  record.load.continue_at(speed_);
   record.position = BalanceRecord::nowhere;
 }
 
@@ -60,7 +61,7 @@ void Measured::begin_phase() {
 }
 
 void Measured::keep_as_past(BalanceRecord& record) const {
-  record.past = {record.load.known() ? meter_.seconds(record.load.ticks) : -1, -1};
+  record.past = {record.load.known() ? meter_.seconds(record.load.ticks) * speed_ : -1, -1};
 }
 
 void Measured::add(Element& element, std::uint64_t round, PeReport& report) {
@@ -106,12 +107,12 @@ PeReport Measured::report(std::uint64_t round, Others others) {
   return report;
 }
 
-PhaseSums Measured::sums(double speed, Others others) const {
+PhaseSums Measured::sums(Others others) const {
   double seconds = 0;
   std::uint64_t n_measured = 0, n_unknown = 0;
   if (array_ == nullptr) {
     seconds = busy_outside(others);
-    return {seconds, seconds * speed, speed, 0, 0, 0};
+    return {seconds, seconds * speed_, speed_, 0, 0, 0};
   }
   for (const Element* element : array_->elements()) {
     if (element == nullptr) continue;
@@ -124,7 +125,7 @@ PhaseSums Measured::sums(double speed, Others others) const {
     }
   }
   const double all = seconds + busy_outside(others);
-  return {all, all * speed, speed, seconds * speed, n_measured, n_unknown};
+  return {all, all * speed_, speed_, seconds * speed_, n_measured, n_unknown};
 }
 
 void Measured::clear() {
@@ -163,7 +164,7 @@ std::uint64_t Measured::recall(bool interrupted) {
     if (element == nullptr) continue;
     BalanceRecord& record = *Collection::record_of(*element);
     const double past = interrupted ? record.past.since_then : record.past.of_last_phase;
-    record.load.ticks = meter_.ticks(std::max(past, 0.0));
+    record.load.ticks = meter_.ticks(std::max(past, 0.0) / speed_);
     if (past < 0)
       record.load.since = LoadRecord::Since::somewhere;
     else

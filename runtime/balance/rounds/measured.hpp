@@ -17,8 +17,15 @@ enum class Others : std::uint8_t {
 
 class Measured {
  public:
-  Measured(Pe& pe, SnapshotIndices indices)
-      : pe_(pe), meter_(pe.start_meter()), indices_(indices), busy_before_(meter_.busy()) {}
+  /// The speed of the PE is relative.
+  Measured(Pe& pe, SnapshotIndices indices, double speed)
+      : pe_(pe),
+        meter_(pe.start_meter()),
+        indices_(indices),
+        speed_(speed),
+        busy_before_(meter_.busy()) {}
+
+  [[nodiscard]] double speed() const { return speed_; }
 
   void attach(Collection& array);
   /// Detaches from the array; later reports cover the PE without its elements.
@@ -32,8 +39,8 @@ class Measured {
   /// The element at this position of the last report; null if it has left or ended.
   [[nodiscard]] Element* reported(std::size_t position) const { return reported_[position]; }
 
-  /// The sums of this PE in the phase so far, at a speed.
-  [[nodiscard]] PhaseSums sums(double speed, Others others) const;
+  /// The sums of this PE in the phase so far.
+  [[nodiscard]] PhaseSums sums(Others others) const;
   /// The round that reported is over: what it did on this PE, as the strategy on the coordinator,
   /// is not background of the phase that begins. For rounds for which the elements wait.
   void round_ends() { begin_phase(); }
@@ -43,7 +50,7 @@ class Measured {
   /// phase.
   void pass_phase();
 
-  /// The loads that a checkpoint had of the elements here, in seconds.
+  /// The loads that a checkpoint had of the elements here, in seconds at speed 1.
   [[nodiscard]] PastLoad past() const;
   /// Takes them for those of the phase so far: of the last phase before the checkpoint, or of the
   /// one that the checkpoint interrupted. Returns the number of elements whose load it had.
@@ -66,6 +73,7 @@ class Measured {
   Pe& pe_;
   Meter& meter_;
   const SnapshotIndices indices_;
+  const double speed_;
   Collection* array_ = nullptr;
   std::vector<Element*> reported_;
   std::uint64_t in_elements_ = 0;  // ticks of the array's elements on this PE

@@ -32,13 +32,13 @@ void BalanceRecord::pack(Writer& ar, const Meter& meter) const {
   std::vector<PackedTraffic> traffic;
   for (const auto& [to, sent] : load.sent.entries()) traffic.push_back({to, sent});
   ar(sync, past, size_bytes);
-  ar(meter.seconds(load.ticks), load.since, entries, traffic);
+  ar(meter.seconds(load.ticks), load.speed, load.since, entries, traffic);
 }
 
 void BalanceRecord::unpack(Reader& ar, const Meter& meter) {
   ar(sync, past, size_bytes);
   load.ticks = meter.ticks(ar.take<double>());
-  ar(load.since);
+  ar(load.speed, load.since);
   for (const PackedEntry& entry : ar.take<std::vector<PackedEntry>>())
     load.entries.push_back({&static_cast<const Action&>(Registry::at(entry.action)),
                             meter.ticks(entry.seconds), entry.calls});

@@ -32,7 +32,7 @@ struct SyncState {
   std::uint32_t led_by = 0;  ///< the broadcast that led to its wait
 };
 
-/// The loads of an element as a checkpoint has them, in seconds; -1 if unknown.
+/// The loads of an element as a checkpoint has them, in seconds at speed 1; -1 if unknown.
 struct PastLoad {
   double of_last_phase = -1;
   double since_then = -1;  ///< of the phase that the checkpoint interrupted
@@ -52,7 +52,8 @@ struct BalanceRecord {
   void unpack(Reader& ar, const Meter& meter);
   /// For a checkpoint.
   [[nodiscard]] PastLoad to_save(const Meter& meter) const {
-    return {past.of_last_phase, load.known() ? meter.seconds(load.ticks) : past.since_then};
+    return {past.of_last_phase,
+            load.known() ? meter.seconds(load.ticks) * load.speed : past.since_then};
   }
 };
 

@@ -28,4 +28,14 @@ std::vector<std::pair<ElementKey, SentTo>> SentTable::entries() const {
   return all;
 }
 
+void LoadRecord::continue_at(double new_speed) {
+  if (new_speed == speed) return;
+  const auto scaled = [factor = speed / new_speed](std::uint64_t measured) {
+    return static_cast<std::uint64_t>(static_cast<double>(measured) * factor);
+  };
+  ticks = scaled(ticks);
+  for (Entry& entry : entries) entry.ticks = scaled(entry.ticks);
+  speed = new_speed;
+}
+
 }  // namespace tess::detail

@@ -52,10 +52,11 @@ struct LoadRecord {
     phase,  ///< since the beginning of the phase
   };
 
-  std::uint64_t ticks = 0;     ///< ticks of the PE's meter
+  std::uint64_t ticks = 0;     ///< ticks of the PE's meter, at `speed`
   std::vector<Entry> entries;  ///< by entry method
   SentTable sent;
   std::uint64_t* of_pe = nullptr;  ///< the PE's sum of the ticks of all such elements
+  double speed = 1;                ///< relative speed of the PE that measures
   Since since = Since::somewhere;
 
   /// True if `ticks` is the whole cost of the element in this phase. A new element that has not run
@@ -75,6 +76,8 @@ struct LoadRecord {
     }
     entries.push_back({action, spent, 1});
   }
+  /// What was measured so far, as if a PE of this speed had measured it.
+  void continue_at(double new_speed);
   /// Begins a phase.
   void clear() {
     since = Since::phase;
