@@ -235,7 +235,8 @@ Plan make_plan(const Summary& summary, std::int32_t n_pes, const ColliderOptions
     if (!boxes.octaves.has(octave)) continue;
     // From its least to its greatest size.
     const double least = octave == 0 ? 0 : search::size_of_octave<double>(octave);
-    for (Level l = plan.level_of(least); l <= plan.level_of(2 * least); ++l) plan.levels |= 1U << l;
+    const double most = search::size_of_octave<double>(octave + 1);
+    for (Level l = plan.level_of(least); l <= plan.level_of(most); ++l) plan.levels |= 1U << l;
   }
   static_cast<void>(plan.grid(0).cells_of(boxes.bounds));  // throws
   return plan;

@@ -16,7 +16,8 @@
 // `index` is the index of the element, if the snapshot has it: [3], [1, 2], ["name"]; otherwise its
 // hash.
 //
-// Entity ids are packed as in vt: sequence number << 18 | home << 2 | 3 (2: does not migrate).
+// Entity ids are packed as in vt: sequence number << 18 | home modulo 2^16 << 2 | 3 (2: does not
+// migrate).
 #pragma once
 
 #include "runtime/balance/snapshot.hpp"

@@ -33,7 +33,7 @@ class Identities {
     const bool migratable = e.migratable[i] != 0;
     const auto home = static_cast<std::uint64_t>(known.home.value);
     return {{"type", "object"},
-            {"id", known.number << 18U | home << 2U | (migratable ? 3U : 2U)},
+            {"id", known.number << 18U | (home & 0xFFFFU) << 2U | (migratable ? 3U : 2U)},
             {"home", home},
             {"migratable", migratable},
             {"collection_id", e.key[i].array.value},

@@ -8,7 +8,7 @@ namespace tess::balance {
 
 /// PEs form consecutive groups of `group_size` (0: about the square root of their number). Elements
 /// move between groups by refine, to the PE of the group that finishes first; then greedy runs
-/// within every group.
+/// within every group. With memory limits the result can be worse than the present placement.
 [[nodiscard]] Assignment hierarchical(const Snapshot& snapshot, std::size_t group_size = 0);
 
 }  // namespace tess::balance

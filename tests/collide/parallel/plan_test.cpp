@@ -142,6 +142,20 @@ TEST_CASE("objects of the largest extents have voxels", "[collide][parallel]") {
   }
 }
 
+// Extents below the least normal number are one octave, over which several levels reach.
+TEST_CASE("objects of denormal extents have voxels on every level that they may stand on",
+          "[collide][parallel]") {
+  constexpr double s = 1e-309;
+  const std::vector<Aabb> boxes{{{0, 0, 0}, {15 * s, 15 * s, 15 * s}},
+                                {{1000 * s, 0, 0}, {1200 * s, 200 * s, 200 * s}}};
+  ObjectList objects;
+  objects.append(Objects{.boxes = boxes}, PeId{0});
+  const Plan plan =
+      make_plan(Summary(objects, 0, 0), 1,
+                {.size = {6 * s, 6 * s, 6 * s}, .rules = {.within_model = WithinModel::test}}, 1);
+  for (const double extent : {15 * s, 200 * s}) CHECK(plan.has(plan.level_of(extent)));
+}
+
 TEST_CASE("a sample has the models of its boxes", "[collide][parallel]") {
   Summary all;
   for (const std::int32_t pe : {2, 0, 1}) {
