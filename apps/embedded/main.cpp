@@ -34,9 +34,7 @@ std::int64_t total;  // on process 0: what the run has found
 
 tess::Task add_up() {
   const auto shares = tess::create_group<Share>();
-  tess::Future<std::int64_t> sum;
-  shares.broadcast<&Share::give>(sum.callback());
-  total = co_await sum;
+  total = co_await shares.reduce<&Share::give>();
 }
 
 /// The program's own messages: to the next process, from any.

@@ -65,9 +65,7 @@ Task pay_all(std::int64_t expected) {
     payers.broadcast<&Payer::pay>(purses, prices);
     purses.broadcast<&Purse::add>(1);
   });
-  Future<std::int64_t> total;
-  payers.broadcast<&Payer::sum_up>(purses, total.callback());
-  const std::int64_t sum = co_await total;
+  const std::int64_t sum = co_await payers.reduce<&Payer::sum_up>(purses);
   const std::int64_t all = expected + tess::machine().n_processes();
   ledger->trial.expect(sum == all, "the purses hold ", sum, ", not ", all);
   purses.destroy();

@@ -236,9 +236,7 @@ Task Balancer::begin_phase() {
 }
 
 Task Balancer::forget_all(Phase phase) {
-  Future<std::uint64_t> forgotten;
-  group().broadcast<&Balancer::forget>(phase, forgotten.callback());
-  co_await forgotten;
+  co_await group().reduce<&Balancer::forget>(phase);
 }
 
 // The phase that a checkpoint interrupted counts if it was at least half as long as the last one.
@@ -250,13 +248,9 @@ Task Balancer::place_again() {
       "begin by themselves and round() is not called");
   running_ = true;
   co_await attached();
-  Future<PastLoad> summed;
-  group().broadcast<&Balancer::sum_past>(summed.callback());
-  const PastLoad past = co_await summed;
-  Future<std::uint64_t> recalled;
-  group().broadcast<&Balancer::recall>(2 * past.since_then >= past.of_last_phase,
-                                       recalled.callback());
-  const std::uint64_t n_known = co_await recalled;
+  const PastLoad past = co_await group().reduce<&Balancer::sum_past>();
+  const std::uint64_t n_known =
+      co_await group().reduce<&Balancer::recall>(2 * past.since_then >= past.of_last_phase);
   if (n_known != 0) {
     co_await round(Others::fixed);
     measured_.round_ends();
@@ -277,9 +271,7 @@ Task Balancer::phase_ends(Others others) {
   co_await attached();
   bool worth = true;
   if (plan_.when == BalanceWhen::automatic) {
-    Future<PhaseSums> sums;
-    group().broadcast<&Balancer::sum_up>(others, sums.callback());
-    const PhaseSums phase = co_await sums;
+    const PhaseSums phase = co_await group().reduce<&Balancer::sum_up>(others);
     worth = coordinator_->worth(phase);
   }
   if (worth) {
@@ -381,9 +373,7 @@ std::vector<std::vector<Move>> Balancer::decide(const std::vector<PeReport>& rep
 }
 
 Task Balancer::central_round(Others others) {
-  Future<std::vector<PeReport>> collected;
-  group().broadcast<&Balancer::collect>(others, collected.callback());
-  const std::vector<PeReport> reports = co_await collected;
+  const std::vector<PeReport> reports = co_await group().reduce<&Balancer::collect>(others);
   std::vector<std::vector<Move>> moves = decide(reports);
   co_await epoch([&] {
     for (std::size_t to = 0; to < moves.size(); ++to)
@@ -392,9 +382,7 @@ Task Balancer::central_round(Others others) {
 }
 
 Task Balancer::distributed_round(Others others) {
-  Future<PhaseSums> prepared;
-  group().broadcast<&Balancer::prepare>(others, prepared.callback());
-  const PhaseSums before = co_await prepared;
+  const PhaseSums before = co_await group().reduce<&Balancer::prepare>(others);
   const double average = before.average_time();
   Future<std::uint64_t> traded;
   plan_.exchange[pe()].send<&Exchange::run>(
@@ -402,9 +390,7 @@ Task Balancer::distributed_round(Others others) {
       traded.callback());
   co_await traded;
   co_await epoch([this] { group().broadcast<&Balancer::fetch>(); });
-  Future<Outcome> summed;
-  group().broadcast<&Balancer::sum_outcome>(summed.callback());
-  const Outcome outcome = co_await summed;
+  const Outcome outcome = co_await group().reduce<&Balancer::sum_outcome>();
   Round round;
   round.n_elements = outcome.n_elements;
   round.n_unknown = before.n_unknown;

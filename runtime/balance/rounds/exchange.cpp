@@ -76,9 +76,8 @@ Task Exchange::run(Order order, Callback<std::uint64_t> done) {
 
 Task Exchange::run_diffusion(Order order) {
   for (std::uint64_t number = 0; number < most_sweeps; ++number) {
-    Future<std::uint64_t> trades;
-    group().broadcast<&Exchange::sweep>(Sweep{number, order.mean_load}, trades.callback());
-    const std::uint64_t n = co_await trades;
+    const Sweep next{number, order.mean_load};
+    const std::uint64_t n = co_await group().reduce<&Exchange::sweep>(next);
     n_all_ += n;
     if (n == 0) break;
   }
@@ -145,21 +144,11 @@ void Exchange::hear(Talk talk) {
 Task Exchange::run_gossip(Order order) {
   const auto n_pes = static_cast<std::size_t>(current_pe().n_pes());
   const auto n_rounds = static_cast<int>((std::bit_width(n_pes) + 1) / 2);
-  Future<std::uint64_t> begun;
-  group().broadcast<&Exchange::begin_gossip>(order, begun.callback());
-  co_await begun;
+  co_await group().reduce<&Exchange::begin_gossip>(order);
   for (int iteration = 0; iteration < most_iterations; ++iteration) {
-    Future<std::uint64_t> forgot;
-    group().broadcast<&Exchange::begin_iteration>(forgot.callback());
-    co_await forgot;
-    for (int round = 0; round < n_rounds; ++round) {
-      Future<std::uint64_t> told;
-      group().broadcast<&Exchange::spread>(told.callback());
-      co_await told;
-    }
-    Future<std::uint64_t> trades;
-    group().broadcast<&Exchange::offer_all>(trades.callback());
-    const std::uint64_t n = co_await trades;
+    co_await group().reduce<&Exchange::begin_iteration>();
+    for (int round = 0; round < n_rounds; ++round) co_await group().reduce<&Exchange::spread>();
+    const std::uint64_t n = co_await group().reduce<&Exchange::offer_all>();
     n_all_ += n;
     if (n == 0) break;
   }
