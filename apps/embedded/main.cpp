@@ -25,9 +25,8 @@ class Share : public tess::Group<Share> {
 std::int64_t my_number = 0;  // of this process
 
 void Share::give(tess::Callback<std::int64_t> target) {
-  const auto& machine = tess::machine();
-  const bool first = pe().value % machine.pes_per_process() == 0;
-  contribute(tess::sum, first ? my_number : 0, std::move(target));
+  contribute(tess::sum, tess::machine().is_first_of_process(pe()) ? my_number : 0,
+             std::move(target));
 }
 
 std::int64_t total;  // on process 0: what the run has found

@@ -61,7 +61,7 @@ class Toucher : public tess::Group<Toucher> {
   void sum_memory(tess::Callback<double> sum) {
     const tess::Machine& machine = tess::machine();
     const bool speaks =
-        pe().value == 0 || (!machine.virtual_time() && pe().value % machine.pes_per_process() == 0);
+        pe().value == 0 || (!machine.virtual_time() && machine.is_first_of_process(pe()));
     if (speaks) malloc_trim(0);
     contribute(tess::sum, speaks ? static_cast<double>(tess::detail::resident_memory()) : 0.0,
                std::move(sum));

@@ -95,9 +95,9 @@ tess::Task simulate(std::shared_ptr<Stage> stage, RunResult& result, RunOptions 
   const auto blocks = tess::create<Block>(tess::sparse);
   const Shown shown{options.progress};
   const auto hand_out = [&] {
-    const std::int32_t each = tess::machine().pes_per_process();
-    for (std::int32_t first = 0; first < tess::n_pes(); first += each)
-      stations[tess::PeId{first}].send<&Station::take>(handle);
+    const tess::Machine& machine = tess::machine();
+    for (std::int32_t process = 0; process < machine.n_processes(); ++process)
+      stations[machine.first_pe(tess::ProcessId{process})].send<&Station::take>(handle);
   };
   co_await tess::epoch(hand_out);
   co_await build_fields(*stage, stations, shown);

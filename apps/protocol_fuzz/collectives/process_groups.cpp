@@ -44,8 +44,7 @@ class Payer : public Group<Payer> {
     }
   }
   void sum_up(ProcessGroupProxy<Purse> purses, Callback<std::int64_t> target) {
-    const Machine& machine = tess::machine();
-    const bool first = pe().value % machine.pes_per_process() == 0;
+    const bool first = tess::machine().is_first_of_process(pe());
     const std::int64_t total = purses.read([](const Purse& purse) { return purse.total(); });
     contribute(sum, first ? total : 0, std::move(target));
   }
