@@ -130,7 +130,7 @@ void Balancer::end_if_over() {
 
 void Balancer::attached_everywhere(std::int64_t n_under_way) {
   attached_ = true;
-  if (when_attached_) when_attached_(0);
+  if (when_attached_) when_attached_();
   n_under_way_ += n_under_way;
   begin_if_ready();
 }
@@ -221,7 +221,7 @@ Task Balancer::reached(std::uint64_t /*n_elements*/) {
 
 Task Balancer::attached() {
   if (attached_) co_return;
-  Future<std::uint64_t> everywhere;
+  Future<void> everywhere;
   when_attached_ = everywhere.callback();
   co_await everywhere;
 }
@@ -384,7 +384,7 @@ Task Balancer::central_round(Others others) {
 Task Balancer::distributed_round(Others others) {
   const PhaseSums before = co_await group().reduce<&Balancer::prepare>(others);
   const double average = before.average_time();
-  Future<std::uint64_t> traded;
+  Future<void> traded;
   plan_.exchange[pe()].send<&Exchange::run>(
       Exchange::Order{plan_.distributed, average, before.mean_load(), coordinator_->options().seed},
       traded.callback());
@@ -423,12 +423,12 @@ void Balancer::resume(std::uint32_t round) {
   barrier_.resume(round);
 }
 
-void Balancer::forget(Phase phase, const Callback<std::uint64_t>& done) {
+void Balancer::forget(Phase phase, const Callback<void>& done) {
   if (phase == Phase::ends)
     measured_.pass_phase();
   else
     measured_.clear();
-  contribute(sum, std::uint64_t{0}, done);
+  contribute(done);
 }
 
 void Balancer::sum_past(const Callback<PastLoad>& target) {
