@@ -108,10 +108,8 @@ Task collide_taken(Collider collider, std::uint64_t step, Summary summary, Repor
 /// Collides the objects of a collision of the Neighbours as they are.
 Task search(Collider collider, std::uint64_t step, Report report) {
   const std::uint64_t own_step = remaining(collider).new_step();
-  Future<Summary> known;
-  collider.neighbours.broadcast<&Neighbours::enlarge>(step, own_step, false, n_sampled(collider),
-                                                      known.callback());
-  const Summary summary = co_await known;
+  const Summary summary = co_await collider.neighbours.reduce<&Neighbours::enlarge>(
+      step, own_step, false, n_sampled(collider));
   co_await collide_taken(collider, own_step, summary, report);
 }
 
@@ -119,10 +117,9 @@ Task search(Collider collider, std::uint64_t step, Report report) {
 /// or if a larger box has a coordinate without a cell, larger boxes are not searched.
 Task find_kept(Collider collider, std::uint64_t step, bool& too_many) {
   const std::uint64_t own_step = remaining(collider).new_step();
-  Future<Summary> known;
-  collider.neighbours.broadcast<&Neighbours::enlarge>(
-      step, own_step, true, n_sampled_per_pe(Point{0, 0, 0}, n_pes()), known.callback());
-  Summary summary = co_await known;
+  const std::size_t n_each = n_sampled_per_pe(Point{0, 0, 0}, n_pes());
+  Summary summary =
+      co_await collider.neighbours.reduce<&Neighbours::enlarge>(step, own_step, true, n_each);
   too_many = are_far_too_many(summary, collider.options.rules, n_pes());
   if (too_many) summary = {};  // nothing is searched
   const Report to_neighbours{
@@ -133,17 +130,13 @@ Task find_kept(Collider collider, std::uint64_t step, bool& too_many) {
     too_many = true;  // the boxes as they are may have cells
   }
   if (too_many) co_return;
-  Future<bool> counted;
-  collider.neighbours.broadcast<&Neighbours::count>(step, counted.callback());
-  too_many = co_await counted;
+  too_many = co_await collider.neighbours.reduce<&Neighbours::count>(step);
 }
 
 /// A step of the Managers encloses the others, so that the collider is known to collide.
 Task collide_with_slack(Collider collider, std::uint64_t step, Report report,
                         Callback<void> taken) {
-  Future<std::uint64_t> held;
-  collider.neighbours.broadcast<&Neighbours::prepare>(step, held.callback());
-  const bool must_search = co_await held == 0;
+  const bool must_search = co_await collider.neighbours.reduce<&Neighbours::prepare>(step) == 0;
   if (taken) taken();
   bool as_they_are = must_search && collider.neighbours.local().keeps_none();
   if (must_search && !as_they_are) co_await find_kept(collider, step, as_they_are);
@@ -176,9 +169,8 @@ Task run_collision(Collider collider, Report report, Callback<void> taken) {
     if (refused) std::rethrow_exception(refused);
     co_return;
   }
-  Future<Summary> known;
-  collider.managers.broadcast<&Manager::prepare>(step, n_sampled(collider), known.callback());
-  const Summary summary = co_await known;
+  const Summary summary =
+      co_await collider.managers.reduce<&Manager::prepare>(step, n_sampled(collider));
   if (taken) taken();
   co_await collide_taken(collider, step, summary, report);
 }

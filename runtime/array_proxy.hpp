@@ -4,6 +4,7 @@
 #pragma once
 
 #include "runtime/element_proxy.hpp"
+#include "runtime/future.hpp"
 
 #include <concepts>
 #include <type_traits>
@@ -71,6 +72,16 @@ class ArrayProxy {
   template <auto F, class... Args>
   void broadcast(Args&&... args) const {
     broadcast_as<F>(detail::OfEntry(), std::forward<Args>(args)...);
+  }
+  /// Broadcasts to entry method F, whose last parameter is a Callback<T>, with a new future's
+  /// callback behind these arguments. Returns that Future<T>: `co_await all.reduce<&C::f>(args…)`
+  /// gives the result. The target takes one value; usually each element contributes to it, in F or
+  /// later. The future has the rules of every Future: it belongs to this PE and has to outlive the
+  /// result, so if it is dropped before, the arrival of the result ends the job. If an array that
+  /// is to contribute ends first, no result comes, and the report of the deadlock says what waits.
+  template <auto F, class... Args>
+  [[nodiscard]] detail::FutureOf<F> reduce(Args&&... args) const {
+    return detail::reduce<F>(*this, std::forward<Args>(args)...);
   }
   /// The same array for broadcasts with a priority.
   [[nodiscard]] PrioritisedArray<C> with(Priority priority) const { return {*this, priority}; }

@@ -10,9 +10,7 @@
 //       state.cells = tess::create<Cell>(tess::range(8));
 //     }
 //     while (state.step < last) {
-//       tess::Future<int> sum;
-//       state.cells.broadcast<&Cell::step>(sum.callback());
-//       const int of_all = co_await sum;
+//       const int of_all = co_await state.cells.reduce<&Cell::step>();
 //       state.total += of_all;
 //       if (++state.step % 10 == 0) co_await tess::checkpoint(folder, state);
 //     }

@@ -8,15 +8,21 @@
 // once (a second co_await ends the job), and the future must outlive it: make it a local variable
 // of the coroutine that awaits it, or a member of an element that does not migrate meanwhile. A
 // Future<void> gets no value.
+//
+// The same in one line, where the callback is the last argument of a broadcast:
+//
+//     const double t = co_await blocks.reduce<&Block::add>();
 #pragma once
 
 #include "runtime/callback.hpp"
 #include "runtime/core/check.hpp"
+#include "runtime/messages/entry_traits.hpp"
 #include "runtime/scheduler/pe_action.hpp"
 #include "runtime/task.hpp"
 
 #include <optional>
 #include <tuple>
+#include <type_traits>
 #include <utility>
 
 namespace tess {
@@ -135,5 +141,54 @@ class Future {
   detail::Waiter own_;
   detail::Waiter* waiting_ = nullptr;
 };
+
+namespace detail {
+
+/// The type of value that the last parameter of an entry method is a target for.
+template <class Parameters>
+struct LastTarget {
+  static constexpr bool exists = false;
+};
+template <class T>
+struct LastTarget<std::tuple<Callback<T>>> {
+  static constexpr bool exists = true;
+  using Value = T;
+};
+template <class First, class Second, class... Others>
+struct LastTarget<std::tuple<First, Second, Others...>>
+    : LastTarget<std::tuple<Second, Others...>> {};
+
+template <auto F>
+consteval auto reduced_value() {
+  if constexpr (!EntryTraits<F>::is_member) {
+    static_assert(EntryTraits<F>::is_member,
+                  "an entry method is a member function: reduce<&Class::function>(…)");
+    return std::type_identity<void>();
+  } else {
+    using Target = LastTarget<typename EntryTraits<F>::Arguments>;
+    static_assert(Target::exists,
+                  "reduce() gives the entry method a target for the result: its last parameter is "
+                  "a tess::Callback<T>");
+    if constexpr (Target::exists) {
+      return std::type_identity<typename Target::Value>();
+    } else {
+      return std::type_identity<void>();
+    }
+  }
+}
+
+/// The future of what entry method F is given a target for.
+template <auto F>
+using FutureOf = Future<typename decltype(reduced_value<F>())::type>;
+
+/// The reduce() of all proxies that broadcast.
+template <auto F, class Proxy, class... Args>
+[[nodiscard]] FutureOf<F> reduce(const Proxy& all, Args&&... args) {
+  FutureOf<F> result;
+  all.template broadcast<F>(std::forward<Args>(args)..., result.callback());
+  return result;
+}
+
+}  // namespace detail
 
 }  // namespace tess

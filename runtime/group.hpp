@@ -122,6 +122,11 @@ class GroupProxy {
   void broadcast(Args&&... args) const {
     ArrayProxy<G>(id_).template broadcast<F>(std::forward<Args>(args)...);
   }
+  /// As ArrayProxy::reduce().
+  template <auto F, class... Args>
+  [[nodiscard]] detail::FutureOf<F> reduce(Args&&... args) const {
+    return detail::reduce<F>(*this, std::forward<Args>(args)...);
+  }
   /// The same group for broadcasts with a priority.
   [[nodiscard]] PrioritisedArray<G> with(Priority priority) const {
     return ArrayProxy<G>(id_).with(priority);

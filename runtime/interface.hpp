@@ -344,6 +344,11 @@ class InterfaceArray {
                                 face_, detail::entry_rule<I, F>.priority,
                                 detail::as_parameters<Arguments>(std::forward<Args>(args)...))));
   }
+  /// As ArrayProxy::reduce(); F is a member function of the interface.
+  template <auto F, class... Args>
+  [[nodiscard]] detail::FutureOf<F> reduce(Args&&... args) const {
+    return detail::reduce<F>(*this, std::forward<Args>(args)...);
+  }
 
   [[nodiscard]] InterfaceProxy<I, IndexType> operator[](const Index& index) const {
     return {id_, index, face_};

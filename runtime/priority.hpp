@@ -15,6 +15,7 @@
 
 #include "runtime/ask.hpp"
 #include "runtime/collections/elements/element_message.hpp"
+#include "runtime/future.hpp"
 #include "runtime/messages/entry_attributes.hpp"
 
 #include <utility>
@@ -67,9 +68,15 @@ class PrioritisedArray {
   PrioritisedArray(const ArrayProxy<C>& array, Priority priority)
       : array_(array), priority_(priority) {}
 
+  // As those of ArrayProxy.
   template <auto F, class... Args>
   void broadcast(Args&&... args) const {
     array_.template broadcast_as<F>(priority_, std::forward<Args>(args)...);
+  }
+  /// The calls have the priority; the result has none.
+  template <auto F, class... Args>
+  [[nodiscard]] detail::FutureOf<F> reduce(Args&&... args) const {
+    return detail::reduce<F>(*this, std::forward<Args>(args)...);
   }
 
  private:

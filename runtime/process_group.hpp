@@ -55,10 +55,6 @@ struct SameProcess {
   }
 };
 
-[[nodiscard]] inline PeId first_pe_of(const Machine& machine, ProcessId process) {
-  return PeId{process.value * machine.pes_per_process()};
-}
-
 /// The object of a process group, and the lock that guards it.
 template <class G>
 struct Guarded {
@@ -100,9 +96,7 @@ class ProcessPart : public Group<ProcessPart<G>> {
   /// The same for a broadcast: on one PE of each process.
   template <auto F>
   void run_once(typename EntryTraits<F>::Arguments arguments) {
-    const Machine& machine = current_pe().machine();
-    if (this->pe() == first_pe_of(machine, machine.process_of(this->pe())))
-      run<F>(std::move(arguments));
+    if (current_pe().machine().is_first_of_process(this->pe())) run<F>(std::move(arguments));
   }
 
  private:
@@ -187,7 +181,7 @@ void create_shared_arrives(Pe& pe, CreateShared<Part, Args...>&& m) {
   const Create create{m.id, range(pe.n_pes()), m.epoch, {shared}};
   constexpr auto handler = &create_arrives<Part, SameProcess<Shared>>;
   const Machine& machine = pe.machine();
-  const PeId first = first_pe_of(machine, machine.process_of(pe.id()));
+  const PeId first = machine.first_pe(machine.process_of(pe.id()));
   for (std::int32_t i = 0; i < machine.pes_per_process(); ++i) {
     pe.completion().sent(m.epoch);
     if (const PeId to{first.value + i}; to != pe.id()) send_system<handler>(pe, to, create);
@@ -209,7 +203,7 @@ CollectionId create_shared(Args&&... args) {
     const ProcessId process{i};
     pe.completion().sent(create.epoch);
     if (process != machine.process_of(pe.id()))
-      send_system<handler>(pe, first_pe_of(machine, process), create);
+      send_system<handler>(pe, machine.first_pe(process), create);
   }
   handler(pe, std::move(create));
   return id;
@@ -264,9 +258,8 @@ class ProcessGroupProxy {
       const Machine& machine = pe.machine();
       TESS_CHECK(process_.value >= 0 && process_.value < machine.n_processes(), "there is no ",
                  process_, ": the run has ", machine.n_processes());
-      const PeId to = process_ == machine.process_of(pe.id())
-                          ? pe.id()
-                          : detail::first_pe_of(machine, process_);
+      const PeId to =
+          process_ == machine.process_of(pe.id()) ? pe.id() : machine.first_pe(process_);
       GroupProxy<Part>(id_)[to].template send<&Part::template run<F>>(
           detail::as_parameters<typename detail::EntryTraits<F>::Arguments>(
               std::forward<Args>(args)...));

@@ -4,8 +4,7 @@
 //
 //     const tess::Scoped blocks(tess::create<Block>(tess::range(8)));
 //     blocks[{3}].send<&Block::add>(4);
-//     blocks.broadcast<&Block::sum>(total.callback());
-//     const int sum = co_await total;
+//     const int sum = co_await blocks.reduce<&Block::sum>();
 //
 // destroy() at the end of the scope drops what is still under way to the array. So await the result
 // of the work, or an epoch around it, before.

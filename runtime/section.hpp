@@ -47,6 +47,12 @@ class SectionProxy {
     pe.completion().sent(call.numbered.epoch);
     detail::send_to_collection<&Lists::start_arrives>(pe, array_, root(pe), {id_, std::move(call)});
   }
+  /// As ArrayProxy::reduce(). For a result of the members F contributes to the section, which it
+  /// therefore knows: row.reduce<&Block::add>(row), with contribute(row, op, value, target).
+  template <auto F, class... Args>
+  [[nodiscard]] detail::FutureOf<F> reduce(Args&&... args) const {
+    return detail::reduce<F>(*this, std::forward<Args>(args)...);
+  }
 
   /// Ends the section: it frees what it holds on every PE; its members stay. What is still under
   /// way to it is dropped: multicasts and contributions. The current epoch waits until all PEs have

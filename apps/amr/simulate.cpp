@@ -27,10 +27,8 @@ tess::Task change_tree(Blocks blocks) {
 
 /// Counts the leaves, and compares with the field at a time.
 tess::Task take_census(Blocks blocks, double time, Outcome& outcome) {
-  tess::Future<Census> census;
-  blocks.broadcast<&Block::count>(time, census.callback());
   const std::int64_t n_before = outcome.end.n_blocks;
-  const Census found = co_await census;
+  const Census found = co_await blocks.reduce<&Block::count>(time);
   outcome.end = found;
   outcome.n_created += found.n_new;
   outcome.n_destroyed += n_before + found.n_new - found.n_blocks;

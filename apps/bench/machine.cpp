@@ -40,8 +40,8 @@ class PingPong final : public Program {
   PingPong(Machine& machine, std::uint64_t n_rounds)
       : machine_(machine),
         n_rounds_(n_rounds),
-        far_{machine.n_processes() > 1 ? (machine.n_processes() - 1) * machine.pes_per_process()
-                                       : machine.n_pes() - 1} {}
+        far_(machine.n_processes() > 1 ? machine.first_pe(ProcessId{machine.n_processes() - 1})
+                                       : PeId{machine.n_pes() - 1}) {}
 
   void start(PeId pe) override {
     if (pe.value != 0) return;

@@ -93,9 +93,7 @@ tess::Task run_steps(const Case& given, Row& row) {
     const std::int64_t begin = tess::now().count();
     co_await run_collision(collider, report);
     const std::int64_t end = tess::now().count();
-    tess::Future<Times> all;
-    clients.broadcast<&Client::gather>(all.callback());
-    const Times times = co_await all;
+    const Times times = co_await clients.reduce<&Client::gather>();
     const auto since = [&](std::int64_t t) { return 1e-9 * static_cast<double>(t - begin); };
     steps.push_back({since(end), since(times.first), since(times.last),
                      1e-9 * static_cast<double>(times.searched), times.n_pairs});

@@ -111,9 +111,8 @@ tess::Task compute(Options options) {
     co_await to_background.apply<&Slab::give, &Slab::take>();
   }
   const double seconds = tess::seconds(tess::now() - begin);
-  tess::Future<Outcome> on_background, on_overset;
-  background.broadcast<&Slab::compare>(options.end, on_background.callback());
-  overset.broadcast<&Slab::compare>(options.end, on_overset.callback());
+  auto on_background = background.reduce<&Slab::compare>(options.end);
+  auto on_overset = overset.reduce<&Slab::compare>(options.end);
   const Outcome a = co_await on_background, b = co_await on_overset;
   tess::print(fmt::format(
       "{} cubes on an edge, {} slabs per mesh, {} steps: {:.6f} s, {:.3f} ms a step\n"

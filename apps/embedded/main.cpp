@@ -25,18 +25,15 @@ class Share : public tess::Group<Share> {
 std::int64_t my_number = 0;  // of this process
 
 void Share::give(tess::Callback<std::int64_t> target) {
-  const auto& machine = tess::machine();
-  const bool first = pe().value % machine.pes_per_process() == 0;
-  contribute(tess::sum, first ? my_number : 0, std::move(target));
+  contribute(tess::sum, tess::machine().is_first_of_process(pe()) ? my_number : 0,
+             std::move(target));
 }
 
 std::int64_t total;  // on process 0: what the run has found
 
 tess::Task add_up() {
   const auto shares = tess::create_group<Share>();
-  tess::Future<std::int64_t> sum;
-  shares.broadcast<&Share::give>(sum.callback());
-  total = co_await sum;
+  total = co_await shares.reduce<&Share::give>();
 }
 
 /// The program's own messages: to the next process, from any.

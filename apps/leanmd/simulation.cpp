@@ -112,9 +112,7 @@ tess::Task Simulation::run_part(std::int32_t first, std::int32_t last) {
 }
 
 tess::Task Simulation::show(std::vector<AtomForce>& all) {
-  tess::Future<std::vector<AtomForce>> shown;
-  state_.cells.broadcast<&Cell::show>(shown.callback());
-  all = co_await shown;
+  all = co_await state_.cells.reduce<&Cell::show>();
 }
 
 tess::Task Simulation::compare_forces() {

@@ -206,9 +206,7 @@ Task transfer_batch(Run& run, const Batch& batch, std::vector<Field>& values,
   }
   report.searched = true;
   co_await transfer.apply();
-  Future<Outcome> outcome;
-  target.workers.broadcast<&Worker::gather>(outcome.callback());
-  const Outcome all = co_await outcome;
+  const Outcome all = co_await target.workers.reduce<&Worker::gather>();
   run.status.resize(run.target.n_points());
   const double* row = all.values.data();
   for (std::size_t i = 0; i < all.points.size(); ++i) {

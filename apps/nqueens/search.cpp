@@ -148,9 +148,7 @@ tess::Task search(Problem problem, Outcome& outcome, std::vector<Board> boards) 
     for (const Board& board : boards) searchers[tess::my_pe()].send<&Searcher::run>(board);
   });
   const double seconds = tess::seconds(tess::now() - begin);
-  tess::Future<Tally> total;
-  searchers.broadcast<&Searcher::report>(total.callback());
-  Tally tally = co_await total;
+  Tally tally = co_await searchers.reduce<&Searcher::report>();
   tally.outcome.seconds = seconds;
   tally.outcome.found = tally.found.path != std::numeric_limits<std::int64_t>::max();
   tally.outcome.solution = tally.found.queens;

@@ -147,12 +147,8 @@ tess::Task assemble(const Problem& problem, Assembly& out) {
 
   const std::array grids{background, overset};
   for (std::size_t number = 0; number < 2; ++number) {
-    tess::Future<tess::m2m::BlankingReport> report;
-    tess::Future<Rows> rows;
-    grids[number].broadcast<&Grid::report>(report.callback());
-    out.meshes[number].report = co_await report;
-    grids[number].broadcast<&Grid::gather>(rows.callback());
-    const Rows all = co_await rows;
+    out.meshes[number].report = co_await grids[number].reduce<&Grid::report>();
+    const Rows all = co_await grids[number].reduce<&Grid::gather>();
     keep(problem, number, all, out.meshes[number]);
   }
   out.hash = hash_of(out);

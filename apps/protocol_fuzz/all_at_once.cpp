@@ -101,15 +101,13 @@ Task run_phase(State& state) {
   const std::uint64_t question = token(random);
   const std::uint64_t answer = co_await state.mayor.element().ask<&Mayor::answer>(question);
   expect(answer == answer_of(question, -1), "the single chare has another answer");
-  Future<Count> of_citizens, of_singers, of_spots, of_mayor;
-  Future<Both> of_offices;
-  Future<double> half;
-  state.citizens.broadcast<&Citizen::report>(of_citizens.callback());
-  state.spots.broadcast<&Spot::report>(of_spots.callback());
+  auto of_citizens = state.citizens.reduce<&Citizen::report>();
+  auto of_spots = state.spots.reduce<&Spot::report>();
+  Future<Count> of_mayor;
   state.mayor.send<&Mayor::report>(of_mayor.callback());
-  state.offices.broadcast<&Office::report>(treasuries, of_offices.callback());
-  state.singers.broadcast<&Singer::count>(half.callback());
-  state.singers.broadcast<&Singer::report>(of_singers.callback());
+  auto of_offices = state.offices.reduce<&Office::report>(treasuries);
+  auto half = state.singers.reduce<&Singer::count>();
+  auto of_singers = state.singers.reduce<&Singer::report>();
   const auto [citizens, singers, spots, mayor, offices, singers_by_two] =
       co_await when_all(of_citizens, of_singers, of_spots, of_mayor, of_offices, half);
   state.spent = state.spent + offices[1];

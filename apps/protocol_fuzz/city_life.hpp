@@ -110,7 +110,7 @@ class Office : public Group<Office>, public Counting {
  public:
   void tick() { ++city->n_ticks; }
   void report(ProcessGroupProxy<Treasury> treasuries, Callback<Both> target) {
-    const bool first = pe().value % machine().pes_per_process() == 0;
+    const bool first = machine().is_first_of_process(pe());
     const Count treasury = treasuries.read([](const Treasury& one) { return one.count(); });
     contribute(sum, Both{count_, first ? treasury : Count{}}, target);
   }

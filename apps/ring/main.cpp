@@ -58,9 +58,7 @@ tess::Task go_round(Options options) {
   co_await tess::epoch(send_all);
   const double seconds = tess::seconds(tess::now() - begin);
 
-  tess::Future<std::int64_t> total;
-  ring.broadcast<&Station::count>(total.callback());
-  const std::int64_t n_visits = co_await total;
+  const std::int64_t n_visits = co_await ring.reduce<&Station::count>();
   const std::int64_t n_hops = token.hops_left * options.messages;
   TESS_CHECK(n_visits == n_hops, n_visits, " visits were counted, not ", n_hops);
   tess::print(fmt::format("{} hops over {} stations: {:.6f} s, {:.3f} us per hop; each met once\n",

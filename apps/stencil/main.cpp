@@ -119,15 +119,11 @@ tess::Task relax(Options options) {
   while (state.step < grid.n_steps) {
     const std::int32_t from = state.step;
     state.step = options.checkpoints.pause_after(from, grid.n_steps);
-    tess::Future<double> paused;
-    state.blocks.broadcast<&Block::run>(state.step, paused.callback());
-    co_await paused;
+    co_await state.blocks.reduce<&Block::run>(state.step);
     co_await options.checkpoints.save_if_due(state, from, grid.n_steps);
   }
   const double seconds = tess::seconds(tess::now() - begin);
-  tess::Future<Outcome> result;
-  state.blocks.broadcast<&Block::compare>(result.callback());
-  const Outcome outcome = co_await result;
+  const Outcome outcome = co_await state.blocks.reduce<&Block::compare>();
   tess::print(fmt::format(
       "{0} x {0} points, {1} x {1} blocks, {2} steps: {3:.6f} s, {4:.3f} us per block and step\n"
       "from the exact iterate {5:.3e}, from the solution {6:.3e}, hash {7:016x}\n",

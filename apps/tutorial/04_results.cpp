@@ -33,13 +33,13 @@ class Reader : public tess::Chare<Reader> {
 tess::Task ask() {
   const auto readers = tess::create<Reader>(tess::range(5));
 
-  tess::Future<int> letters;
-  readers.broadcast<&Reader::count>(letters.callback());
-  tess::print(co_await letters, " letters\n");
+  const int letters = co_await readers.reduce<&Reader::count>();
+  tess::print(letters, " letters\n");
 
-  tess::Future<std::string> longest, sentence, third;
-  readers.broadcast<&Reader::longest>(longest.callback());
-  readers.broadcast<&Reader::sentence>(sentence.callback());
+  // Several results may be under way at once.
+  auto longest = readers.reduce<&Reader::longest>();
+  auto sentence = readers.reduce<&Reader::sentence>();
+  tess::Future<std::string> third;
   readers[{2}].send<&Reader::spell>(third.callback());
   tess::print("the longest word is ", co_await longest, "\n");
   tess::print("the sentence is", co_await sentence, "\n");

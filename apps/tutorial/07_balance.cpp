@@ -37,9 +37,7 @@ tess::Task measure() {
     const auto workers = tess::create<Worker>(tess::range(16));
     const auto balancer = tess::start_balancing(workers, {.strategy = strategy});
     const tess::Time begin = tess::now();
-    tess::Future<void> done;
-    workers.broadcast<&Worker::begin>(done.callback());
-    co_await done;
+    co_await workers.reduce<&Worker::begin>();
     std::size_t n_moves = 0;
     for (const auto& round : balancer.history()) n_moves += round.n_moved;
     tess::print(strategy, ": ", n_moves, " moves, ", tess::seconds(tess::now() - begin), " s\n");

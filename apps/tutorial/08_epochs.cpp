@@ -28,9 +28,7 @@ tess::Task play() {
   for (const tess::Index2 start : {tess::Index2{0, 0}, tess::Index2{3, 3}}) {
     // Ends when the message, all that it caused, and all that those caused, are done.
     co_await tess::epoch([&] { board[start].send<&Field::reach>(0); });
-    tess::Future<int> most;
-    board.broadcast<&Field::report>(most.callback());
-    tess::print("at most ", co_await most, " moves\n");
+    tess::print("at most ", co_await board.reduce<&Field::report>(), " moves\n");
   }
 }
 

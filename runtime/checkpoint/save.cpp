@@ -215,8 +215,8 @@ std::string remove_here(Pe& /*pe*/, const RemoveQuestion& question) {
 /// They look at a folder, each for its process.
 std::vector<PeId> first_of_processes(Pe& pe) {
   std::vector<PeId> pes;
-  for (std::int32_t at = 0; at < pe.n_pes(); at += pe.machine().pes_per_process())
-    pes.push_back(PeId{at});
+  for (std::int32_t process = 0; process < pe.machine().n_processes(); ++process)
+    pes.push_back(pe.machine().first_pe(ProcessId{process}));
   return pes;
 }
 

@@ -103,6 +103,12 @@ class Machine {
   [[nodiscard]] ProcessId process_of(PeId pe) const {
     return ProcessId{pe.value / pes_per_process_};
   }
+  /// The PEs of a process are this one and those that follow it.
+  [[nodiscard]] PeId first_pe(ProcessId process) const {
+    return PeId{process.value * pes_per_process_};
+  }
+  /// True for one PE of each process.
+  [[nodiscard]] bool is_first_of_process(PeId pe) const { return first_pe(process_of(pe)) == pe; }
 
   /// True if messages between the two PEs travel as pointers.
   [[nodiscard]] bool same_process(PeId a, PeId b) const { return process_of(a) == process_of(b); }

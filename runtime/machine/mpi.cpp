@@ -55,8 +55,8 @@ class MpiMachine final : public Machine, private Network {
                   .oversubscribed = !enough};
     transport_ = std::make_unique<Transport>(session_.comm(), n_processes_, options.chunk_bytes);
     for (std::int32_t i = 0; i < pes_per_process_; ++i) mail_.push_back(transport_->new_mail());
-    team_ = std::make_unique<Team>(PeId{process_.value * pes_per_process_}, pes_per_process_,
-                                   placement_, static_cast<Network*>(this));
+    team_ = std::make_unique<Team>(first_pe(process_), pes_per_process_, placement_,
+                                   static_cast<Network*>(this));
     must(MPI_Barrier(session_.comm()), "MPI_Barrier");  // the clocks start at the same time
     start_ = std::chrono::steady_clock::now();
   }

@@ -105,7 +105,7 @@ class SimulatedMachine final : public Machine {
   }
   void send(PeId from, ProcessId to, Buffer&& bytes) override {
     const NotWork pause(*this);
-    const PeId taker{to.value * pes_per_process_};
+    const PeId taker = first_pe(to);
     const std::int64_t time = departs({from, taker, nullptr, {bytes.data(), bytes.size()}},
                                       bytes.size(), bytes.size(), Traffic::user, between_);
     // A copy: the sender keeps its memory, as it does on a real machine.
@@ -116,7 +116,7 @@ class SimulatedMachine final : public Machine {
   void send(PeId from, ProcessId to, Parcel&& parcel) override {
     const NotWork pause(*this);
     const std::size_t n_head = parcel.head.size();
-    const PeId taker{to.value * pes_per_process_};
+    const PeId taker = first_pe(to);
     const std::int64_t time =
         departs({from, taker, nullptr, {parcel.head.data(), n_head}},
                 n_head + bytes_of_parts(parcel), n_head, Traffic::user, between_);

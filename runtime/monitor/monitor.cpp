@@ -189,9 +189,7 @@ class Monitor::Loop {
     }
   }
 
-  [[nodiscard]] PeId first_pe() const {
-    return PeId{machine_.process().value * machine_.pes_per_process()};
-  }
+  [[nodiscard]] PeId first_pe() const { return machine_.first_pe(machine_.process()); }
   [[nodiscard]] OfPe& of_pe(PeId pe) {
     return of_pes_.at(static_cast<std::size_t>(pe.value - first_pe().value));
   }

@@ -12,8 +12,8 @@ PeSample sample_of(Pe& pe) {
   sample.counts = pe.statistics();
   sample.n_ready = pe.n_ready();
   sample.n_epochs = pe.completion().n_epochs();
-  const std::int32_t first = pe.machine().process().value * pe.machine().pes_per_process();
-  if (pe.id().value == first) sample.process_bytes = resident_memory();
+  const Machine& machine = pe.machine();
+  if (pe.id() == machine.first_pe(machine.process())) sample.process_bytes = resident_memory();
   for (const HostedCollection* collection : pe.collections())
     sample.collections.push_back({collection->id(), collection->name(), collection->n_local()});
   return sample;

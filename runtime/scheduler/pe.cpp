@@ -59,7 +59,7 @@ Pe::Pe(PeId id, Runtime& runtime, Machine& machine, Pool& pool, std::uint64_t se
       intercepts_(machine.intercepts_local()),
       patience_(machine.patience()),
       message_cost_(machine.message_cost()),
-      first_here_(machine.process_of(id).value * machine.pes_per_process()),
+      first_here_(machine.first_pe(machine.process_of(id)).value),
       n_here_(machine.pes_per_process()),
       bundle_ticks_(static_cast<std::uint64_t>(bundle_seconds / seconds_per_tick())),
       packed_ticks_(static_cast<std::uint64_t>(packed_seconds / seconds_per_tick())),

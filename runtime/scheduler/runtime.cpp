@@ -80,7 +80,7 @@ Runtime::Runtime(Machine& machine, const RuntimeOptions& options, const ElementW
       options_(options),
       element_words_(words),
       main_(std::move(main)),
-      first_{machine.process().value * machine.pes_per_process()},
+      first_(machine.first_pe(machine.process())),
       reserve_(std::make_unique_for_overwrite<std::byte[]>(reserve_bytes)) {
   const std::int32_t n_here = machine.n_pes_here();
   asked_.resize(static_cast<std::size_t>(n_here), -1);

@@ -21,10 +21,9 @@ Time HangWatch::period() const {
 
 std::vector<std::string> HangWatch::look(Clock::time_point now) {
   std::vector<std::string> lines;
-  const std::int32_t first =
-      runtime_.machine().process().value * runtime_.machine().pes_per_process();
+  const PeId first = runtime_.machine().first_pe(runtime_.machine().process());
   for (std::size_t i = 0; i < n_entered_.size(); ++i) {
-    const PeId pe{first + static_cast<std::int32_t>(i)};
+    const PeId pe{first.value + static_cast<std::int32_t>(i)};
     const std::uint64_t n = runtime_.pe(pe).watch()->n_entered();
     if (n != n_entered_[i]) {
       n_entered_[i] = n;

@@ -205,9 +205,7 @@ class Service::Loop {
   void start() {
     if (!thread_.joinable()) thread_ = std::thread([this] { io_.run(); });
   }
-  [[nodiscard]] PeId first_pe() const {
-    return PeId{machine_.process().value * machine_.pes_per_process()};
-  }
+  [[nodiscard]] PeId first_pe() const { return machine_.first_pe(machine_.process()); }
   /// The processes of the job in different memories.
   [[nodiscard]] std::int32_t n_processes() const {
     return machine_.n_pes_here() == machine_.n_pes() ? 1 : machine_.n_processes();
@@ -450,7 +448,7 @@ void report_is_fetched(Pe& pe, Fetch&& /*fetch*/) {
     send_uncounted<&report_arrives>(pe, PeId{0}, std::move(*report));
 }
 void report_arrives(Pe& pe, ProcessReport&& report) {
-  const PeId from{report.process.value * pe.machine().pes_per_process()};
+  const PeId from = pe.machine().first_pe(report.process);
   loop_of(pe).take_report(std::move(report));
   for (std::int32_t i = 0; i < pe.machine().pes_per_process(); ++i)
     send_uncounted<&report_is_confirmed>(pe, PeId{from.value + i}, Fetch{});

@@ -51,9 +51,7 @@ Task collide_crowd(std::int32_t n_boxes, std::uint64_t& n_pairs) {
   });
   co_await epoch([&] { crowd.broadcast<&Crowd::submit>(collider, n_boxes); });
   co_await run_collision(collider, {report_to<&Crowd::receive>(crowd), {}});
-  Future<std::uint64_t> total;
-  crowd.broadcast<&Crowd::count>(total.callback());
-  n_pairs = co_await total;
+  n_pairs = co_await crowd.reduce<&Crowd::count>();
 }
 
 std::int64_t peak_bytes() {
@@ -78,9 +76,7 @@ Task collide_often(tess::test::Growth& growth, std::uint64_t& n_pairs) {
     growth.after(round);
   }
   CHECK(n_collections() == 1);
-  Future<std::uint64_t> total;
-  clients.broadcast<&Client::count>(total.callback());
-  n_pairs = co_await total;
+  n_pairs = co_await clients.reduce<&Client::count>();
 }
 
 TEST_CASE("colliders in a loop leave memory flat", "[collide]") {

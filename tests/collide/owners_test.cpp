@@ -45,9 +45,7 @@ Task collide_two(Owners owners, OwnerId a, OwnerId b, Callback<Hits> call, std::
   collider.submit(Objects{a, ModelId{0}, std::array{Aabb{{0, 0, 0}, {1, 1, 1}}}});
   collider.submit(Objects{b, ModelId{1}, std::array{Aabb{{1, 1, 1}, {2, 2, 2}}}});
   co_await run_collision(collider, {call, {}});
-  Future<std::int64_t> all;
-  owners.template broadcast<&Owner::count>(all.callback());
-  n += co_await all;
+  n += co_await owners.template reduce<&Owner::count>();
 }
 
 Task report_to_all(std::int64_t& n) {

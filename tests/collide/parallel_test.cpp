@@ -173,9 +173,7 @@ Task set_up(const Problem& problem, Fixture& fixture) {
 
 /// Adds what the clients have received to the rounds of the problem.
 Task gather(const Fixture& fixture, Problem& problem) {
-  Future<Reports> all;
-  fixture.clients.broadcast<&Client::gather>(all.callback());
-  problem.rounds.push_back(in_order(co_await all));
+  problem.rounds.push_back(in_order(co_await fixture.clients.reduce<&Client::gather>()));
 }
 
 Task collide_rounds(Problem& problem) {
@@ -212,9 +210,7 @@ Task collide_bad(Problem& problem) {
   co_await epoch(
       [&] { fixture.clients.broadcast<&Client::submit_bad>(fixture.collider, problem.scene); });
   co_await run_collision(fixture.collider, fixture.report);
-  Future<std::int64_t> refused;
-  fixture.clients.broadcast<&Client::count_refused>(refused.callback());
-  problem.n_refused = co_await refused;
+  problem.n_refused = co_await fixture.clients.reduce<&Client::count_refused>();
   co_await gather(fixture, problem);
 }
 

@@ -126,9 +126,7 @@ tess::Task call_two(bool in_any_order) {
     const tess::PeId pe = co_await summoned[0].ask<&Summoned::pe>();
     CHECK(pe == tess::PeId{3});
   }
-  tess::Future<int> n_left;
-  summoned.broadcast<&Summoned::count>(n_left.callback());
-  const int left = co_await n_left;
+  const int left = co_await summoned.reduce<&Summoned::count>();
   CHECK(left == 7);
 }
 
@@ -179,9 +177,7 @@ TEST_CASE("a reduction of exact sums has the same bits in every order", "[api]")
   CHECK(rounded != exact.total());
   over_seeds([&exact]() -> tess::Task {
     const auto nodes = tess::create<Node>(tess::range(n));
-    tess::Future<tess::ExactSum> sum;
-    nodes.broadcast<&Node::add_exactly>(sum.callback());
-    const tess::ExactSum all = co_await sum;
+    const tess::ExactSum all = co_await nodes.reduce<&Node::add_exactly>();
     CHECK(all.total() == exact.total());
   });
 }
@@ -204,12 +200,11 @@ TEST_CASE("an element's proxy is a value: empty, compared, hashed, sent, kept", 
     CHECK(co_await last == 4);
 
     const auto members = tess::create_group<Greeter>();
-    tess::Future<int> all;
     tess::MemberProxy<Greeter> from;
     CHECK(from != members[tess::PeId{1}]);
     from = members[tess::PeId{0}];
-    members.broadcast<&Greeter::hello>(from, all.callback());
-    CHECK(co_await all == tess::n_pes());
+    const int n_greeted = co_await members.reduce<&Greeter::hello>(from);
+    CHECK(n_greeted == tess::n_pes());
     CHECK(std::unordered_set<tess::MemberProxy<Greeter>>{from, members[tess::PeId{1}]}.size() == 2);
   });
 }
@@ -230,6 +225,27 @@ TEST_CASE("a result without a value: futures, targets, reductions", "[api]") {
     tess::Future<int> last;
     nodes[{6}].send<&Node::tell>(last.callback());
     CHECK(co_await last == 77);
+  });
+}
+
+TEST_CASE("reduce() broadcasts and gives the future of the result, for now or for later", "[api]") {
+  over_seeds([]() -> tess::Task {
+    const auto nodes = tess::create<Node>(tess::range(4));
+    const auto members = tess::create_group<Greeter>();
+    const int merged = co_await nodes.reduce<&Node::add>(1);
+    CHECK(merged == 100);
+    co_await nodes.reduce<&Node::there>();
+
+    auto first = nodes.with(tess::expedited).reduce<&Node::add_in_order>(2);
+    auto second = members.reduce<&Greeter::hello>(members[tess::PeId{0}]);
+    CHECK(co_await second == tess::n_pes());
+    CHECK(co_await first == 96);
+
+    // One element may also give the result by itself. The arguments have memory of their own.
+    const auto one = tess::create<Node>(tess::range(1));
+    const double all =
+        co_await one.reduce<&Node::four>(1, std::string(40, 'x'), 0.5, std::vector<int>(3));
+    CHECK(all == 44.5);
   });
 }
 

@@ -98,9 +98,7 @@ tess::Task place(Placed& found) {
     for (int x = 0; x < 4; ++x)
       for (int y = 0; y < 4; ++y) colours[{x, y}].send<&Field::add>(x * y);
   });
-  tess::Future<int> total;
-  colours.broadcast<&Field::total>(total.callback());
-  found.total = co_await total;
+  found.total = co_await colours.reduce<&Field::total>();
 }
 
 void check_placed(const Placed& found, int n_pes) {

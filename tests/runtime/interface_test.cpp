@@ -22,6 +22,7 @@ class Account {
   virtual tess::Task close(tess::Callback<std::string> target) = 0;
   [[nodiscard]] virtual std::int64_t balance() const = 0;
   virtual std::int64_t withdraw(std::int64_t amount) = 0;
+  virtual void add_up(const tess::Callback<std::int64_t>& target) = 0;
   /// Not virtual: it is a member of the interface itself.
   void pay_twice(std::int64_t amount) {
     pay(amount);
@@ -51,6 +52,9 @@ class Savings : public tess::Chare<Savings>, public Account {
     sum_ -= amount;
     return amount;
   }
+  void add_up(const tess::Callback<std::int64_t>& target) override {
+    contribute(tess::sum, balance(), target);
+  }
   template <class Ar>
   void serialize(Ar& ar) {
     ar(sum_, keys_);
@@ -78,6 +82,9 @@ class Debt : public Account, public tess::Chare<Debt> {
   std::int64_t withdraw(std::int64_t amount) override {
     parts_.push_back(-amount);
     return amount;
+  }
+  void add_up(const tess::Callback<std::int64_t>& target) override {
+    contribute(tess::sum, balance(), target);
   }
   template <class Ar>
   void serialize(Ar& ar) {
@@ -111,6 +118,7 @@ class Bank : public tess::Chare<Bank> {
 
 struct Statement {
   std::vector<std::int64_t> balances;
+  std::int64_t of_savings = 0, of_debts = 0;
   std::string error, closed, debt;
   bool equal = false;
 };
@@ -139,6 +147,8 @@ tess::Task bank(Statement& found) {
     const std::int64_t balance = co_await account.ask<&Account::balance>();
     found.balances.push_back(balance);
   }
+  found.of_savings = co_await tess::InterfaceArray<Account>(savings).reduce<&Account::add_up>();
+  found.of_debts = co_await tess::InterfaceArray<Account>(debts).reduce<&Account::add_up>();
   try {
     (void)co_await all[0].ask<&Account::withdraw>(1000000);
   } catch (const tess::Error& error) {
@@ -159,6 +169,8 @@ void check_statement(const Statement& found) {
                                            2 * 10 + 8 + 2000, -100 + 10 + 6 + 1000 + 20000 + 10000,
                                            -7 + 10 + 8,       2 * 10 + 20 + 2000};
   tess::test::expect(found.balances == expected, "balances");
+  tess::test::expect(found.of_savings == expected[0] + expected[2] + expected[5], found.of_savings);
+  tess::test::expect(found.of_debts == expected[1] + expected[3], found.of_debts);
   tess::test::expect(found.error == "savings 0 have 2020", found.error);
   tess::test::expect(found.closed == "savings" && found.debt == "debt", found.closed, found.debt);
   tess::test::expect(found.equal, "equal proxies");

@@ -112,9 +112,7 @@ tess::Task scan_tiles(std::int64_t& n_right) {
       tiles.broadcast<&Tile::give_words>(1);
     });
   }
-  tess::Future<std::int64_t> sum;
-  tiles.broadcast<&Tile::count>(sum.callback());
-  n_right = co_await sum;
+  n_right = co_await tiles.reduce<&Tile::count>();
 }
 
 /// Elements that come and go, with any ordered index.
@@ -145,9 +143,7 @@ tess::Task scan_entries(std::vector<std::string>& found) {
       entries[other].insert_on(tess::PeId{tess::n_pes() - 1});
       if (round == 2) entries["fig"].destroy();
     });
-    tess::Future<std::vector<std::pair<std::string, std::string>>> all;
-    entries.broadcast<&Entry::give>(all.callback());
-    const auto pairs = co_await all;
+    const auto pairs = co_await entries.reduce<&Entry::give>();
     for (const auto& [name, before] : pairs) found.push_back(before);
   }
 }
@@ -184,9 +180,7 @@ tess::Task scan_cells(int& n_all) {
     cells[{1, 1}].destroy();
   });
   co_await tess::epoch([&] { cells.broadcast<&Cell::give>(); });
-  tess::Future<int> sum;
-  cells.broadcast<&Cell::count>(sum.callback());
-  n_all = co_await sum;
+  n_all = co_await cells.reduce<&Cell::count>();
 }
 
 class Member : public tess::Group<Member> {
@@ -204,9 +198,7 @@ class Member : public tess::Group<Member> {
 
 tess::Task scan_group(std::vector<std::pair<tess::Index1, int>>& found) {
   const auto members = tess::create_group<Member>();
-  tess::Future<std::vector<std::pair<tess::Index1, int>>> all;
-  members.broadcast<&Member::give>(all.callback());
-  found = co_await all;
+  found = co_await members.reduce<&Member::give>();
 }
 
 /// An index of a user's, in its own order, whose words are not those of a grid.
@@ -233,9 +225,7 @@ tess::Task scan_books(std::vector<std::pair<Shelf, int>>& found) {
     books[Shelf{0, 0, 6}].insert_on(tess::PeId{1});
     books[Shelf{0, 1, 1}].insert_on(tess::PeId{1});
   });
-  tess::Future<std::vector<std::pair<Shelf, int>>> all;
-  books.broadcast<&Book::read>(all.callback());
-  found = co_await all;
+  found = co_await books.reduce<&Book::read>();
 }
 
 /// One element never contributes, or the array ends in the middle: nothing of the scan is left.

@@ -35,6 +35,9 @@ class Cell : public tess::Chare<Cell> {
   void mean_of_all(tess::Callback<double> target) {
     contribute(Mean{}, Mean::Part{1.0 * index().x, 1}, target);
   }
+  void mean_of(tess::SectionProxy<Cell> section, const tess::Callback<double>& target) {
+    contribute(section, Mean{}, Mean::Part{1.0 * index().x, 1}, target);
+  }
   struct Request {
     tess::SectionProxy<Cell> section;
     tess::Callback<double> mean;
@@ -69,6 +72,8 @@ tess::Task reduce() {
   CHECK(co_await some_mean == 5.0);
   const Squares some = co_await some_squares;
   CHECK(some == Squares{{{1}, 1}, {{3}, 9}, {{5}, 25}, {{7}, 49}, {{9}, 81}});
+  const double mean_again = co_await odd.reduce<&Cell::mean_of>(odd);
+  CHECK(mean_again == 5.0);
   co_await tess::epoch([&] { odd.destroy(); });
 }
 
@@ -136,9 +141,7 @@ tess::Task push(std::vector<int>& heard) {
   const auto all = tess::create_section_if(pushers, [](tess::Index1) { return true; });
   for (int i = 0; i < 12; ++i)
     co_await tess::epoch([&] { all.broadcast<&Pusher::hear>(i % 4 == 3); });
-  tess::Future<std::vector<int>> reports;
-  pushers.broadcast<&Pusher::report>(reports.callback());
-  heard = co_await reports;
+  heard = co_await pushers.reduce<&Pusher::report>();
 }
 
 }  // namespace

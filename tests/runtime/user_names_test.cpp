@@ -101,10 +101,8 @@ TEST_CASE("a program in namespace tess may use the names of internals", "[runtim
   setup.machine = make_simulated_machine(options);
   int total = 0;
   const auto main = [&total]() -> Task {
-    Future<int> result;
     const auto stations = create<Station>(range(4));
-    stations.broadcast<&Station::count>(result.callback());
-    total = co_await result;
+    total = co_await stations.reduce<&Station::count>();
   };
   CHECK(tess::run(setup, main) == 0);
   CHECK(total == 6);

@@ -51,9 +51,7 @@ tess::Task collect_values(std::vector<int>& gathered, int n) {
   co_await tess::epoch([&] {
     for (int i = 0; i < n; ++i) members[{(i * 37) % n}].insert_on(tess::PeId{i % 3});
   });
-  tess::Future<std::vector<int>> result;
-  members.broadcast<&Giver::give>(result.callback());
-  gathered = co_await result;
+  gathered = co_await members.reduce<&Giver::give>();
 }
 
 class Pusher : public tess::Chare<Pusher, tess::Index1> {

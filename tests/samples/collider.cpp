@@ -38,9 +38,7 @@ tess::Task find_pairs(std::uint64_t& n_pairs) {
   co_await tess::epoch([&] { clients.broadcast<&Client::submit>(collider); });
   const tess::collide::Report report{tess::collide::report_to<&Client::receive>(clients), {}};
   co_await tess::collide::run_collision(collider, report);
-  tess::Future<std::uint64_t> total;
-  clients.broadcast<&Client::count>(total.callback());
-  n_pairs = co_await total;
+  n_pairs = co_await clients.reduce<&Client::count>();
 }
 
 }  // namespace

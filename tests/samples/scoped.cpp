@@ -15,11 +15,9 @@ class Block : public tess::Chare<Block> {
 };
 
 tess::Task add_up(int& result) {
-  tess::Future<int> total;
   const tess::Scoped blocks(tess::create<Block>(tess::range(8)));
   blocks[{3}].send<&Block::add>(4);
-  blocks.broadcast<&Block::sum>(total.callback());
-  const int sum = co_await total;
+  const int sum = co_await blocks.reduce<&Block::sum>();
   result = sum;
 }
 

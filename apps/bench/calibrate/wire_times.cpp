@@ -141,9 +141,7 @@ class WirePeer : public tess::Chare<WirePeer, tess::Index1> {
 
 /// Adds the nanoseconds of a round.
 tess::Task sample(tess::ArrayProxy<WirePeer> peers, Match match, Samples& samples) {
-  tess::Future<double> done;
-  peers.broadcast<&WirePeer::play>(match, done.callback());
-  samples.add(co_await done);
+  samples.add(co_await peers.reduce<&WirePeer::play>(match));
 }
 
 }  // namespace

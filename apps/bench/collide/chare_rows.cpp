@@ -121,9 +121,7 @@ tess::Task collide(const Problem& problem, const Setting& setting, double& nanos
     co_await tess::epoch([&] { clients.broadcast<&Client::submit>(collider); });
     co_await run_collision(collider, report);
     nanoseconds = setting.n_pes == 1 ? processor.nanoseconds() : elapsed.nanoseconds();
-    tess::Future<std::uint64_t> total;
-    clients.broadcast<&Client::give_count>(total.callback());
-    n_pairs = co_await total;
+    n_pairs = co_await clients.reduce<&Client::give_count>();
   }
 }
 

@@ -124,9 +124,7 @@ tess::Task measure_balance(const Bench& bench, Samples& total, Samples& floor) {
     grinders.broadcast<&Grinder::iterate>();
     co_await done;
     const double seconds = 1e-9 * watch.nanoseconds();
-    tess::Future<std::int64_t> steps;
-    grinders.broadcast<&Grinder::count>(steps.callback());
-    const std::int64_t n_steps = co_await steps;
+    const std::int64_t n_steps = co_await grinders.reduce<&Grinder::count>();
     TESS_CHECK(n_steps == n_grinders * plan.n_iterations, n_steps, " steps were done");
     if (turn == 0) continue;
     total.add(seconds);

@@ -47,9 +47,7 @@ tess::Task measure_round(const Bench& bench, Samples& samples) {
   const tess::BalancerProxy balancer = tess::start_balancing(residents, {}, &move_a_tenth);
   const auto begin = [&] { residents.broadcast<&Resident::begin>(n_phases); };
   co_await tess::epoch(begin);
-  tess::Future<std::int64_t> counted;
-  residents.broadcast<&Resident::count>(counted.callback());
-  const std::int64_t total = co_await counted;
+  const std::int64_t total = co_await residents.reduce<&Resident::count>();
   TESS_CHECK(total == std::int64_t{n} * (n_phases + 1), total, " phases were run");
   // The strategy is timed by the system's clock; virtual time of a fixed cost does not have it.
   const bool subtracts = !tess::current_pe().machine().virtual_time();

@@ -61,7 +61,7 @@ class Toucher : public tess::Group<Toucher> {
   void sum_memory(tess::Callback<double> sum) {
     const tess::Machine& machine = tess::machine();
     const bool speaks =
-        pe().value == 0 || (!machine.virtual_time() && pe().value % machine.pes_per_process() == 0);
+        pe().value == 0 || (!machine.virtual_time() && machine.is_first_of_process(pe()));
     if (speaks) malloc_trim(0);
     contribute(tess::sum, speaks ? static_cast<double>(tess::detail::resident_memory()) : 0.0,
                std::move(sum));
@@ -74,9 +74,7 @@ struct CreationRun {
 };
 
 tess::Task memory(CreationRun run, double& bytes) {
-  tess::Future<double> sum;
-  run.touchers.broadcast<&Toucher::sum_memory>(sum.callback());
-  bytes = co_await sum;
+  bytes = co_await run.touchers.reduce<&Toucher::sum_memory>();
 }
 
 /// All PEs touch their shares; gives the nanoseconds of a touch.
@@ -106,9 +104,7 @@ tess::Task measure_creation(const Bench& bench, CreationVariant& variant, Sample
     if (turn == 0) co_await memory(run, after);
     co_await touch_all(run, {cells, Way::plain, 0, 0, variant.n_at_once}, message);
 
-    tess::Future<std::int64_t> total;
-    cells.broadcast<&Cell::count>(total.callback());
-    const std::int64_t weight = co_await total;
+    const std::int64_t weight = co_await cells.reduce<&Cell::count>();
     TESS_CHECK(weight == 2 * run.n, "cells were touched ", weight, " times, not ", 2 * run.n);
     const auto end = [&] { cells.destroy(); };
     co_await tess::epoch(end);

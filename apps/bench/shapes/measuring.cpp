@@ -40,9 +40,7 @@ tess::Task pass_work(const Bench& bench, Watched watched, double& nanoseconds) {
     const Stopwatch watch;
     co_await tess::epoch(begin);
     nanoseconds = watch.nanoseconds();
-    tess::Future<std::int64_t> total;
-    workers.broadcast<&Worker::count>(total.callback());
-    const std::int64_t n_worked = co_await total;
+    const std::int64_t n_worked = co_await workers.reduce<&Worker::count>();
     TESS_CHECK(n_worked == n * n_hops, n_worked, " messages were worked on");
     n_hops = bench.size(300, 3);
   }

@@ -131,9 +131,7 @@ tess::Task hop_about(MessageRun<sent> run, ChainStart start, double& result) {
     co_await tess::epoch(begin);
     result = watch.nanoseconds() / n_messages;
   }
-  tess::Future<std::int64_t> total;
-  run.hoppers.template broadcast<&Hopper<sent>::count>(total.callback());
-  const std::int64_t n = co_await total;
+  const std::int64_t n = co_await run.hoppers.template reduce<&Hopper<sent>::count>();
   TESS_CHECK(n == run.n_chains * start.n_hops, n, " hops were made, not ",
              run.n_chains * start.n_hops);
 }
@@ -167,9 +165,7 @@ tess::Task ask_about(tess::ArrayProxy<Asker> askers, std::int32_t n, std::int64_
   const Stopwatch watch;
   co_await tess::epoch([&] { askers.broadcast<&Asker::ask_others>(n_asks); });
   result = watch.nanoseconds() / (static_cast<double>(n) * static_cast<double>(n_asks));
-  tess::Future<std::int64_t> total;
-  askers.broadcast<&Asker::replies>(total.callback());
-  const std::int64_t n_replies = co_await total;
+  const std::int64_t n_replies = co_await askers.reduce<&Asker::replies>();
   TESS_CHECK(n_replies == n * n_asks, n_replies, " replies came, not ", n * n_asks);
 }
 

@@ -57,16 +57,12 @@ tess::Task measure_migration(const Bench& bench, Samples& by_epoch, Samples& by_
     co_await tess::epoch(go);
     const double epoch = of_epoch.nanoseconds() / n;
 
-    tess::Future<std::int64_t> arrived;
     const Stopwatch of_message;
-    nomads.broadcast<&Nomad::go_followed>(arrived.callback());
-    const std::int64_t n_arrived = co_await arrived;
+    const std::int64_t n_arrived = co_await nomads.reduce<&Nomad::go_followed>();
     const double message = of_message.nanoseconds() / n;
     TESS_CHECK(n_arrived == n, n_arrived, " of ", n, " elements arrived");
 
-    tess::Future<std::int64_t> moves;
-    nomads.broadcast<&Nomad::check>(moves.callback());
-    const std::int64_t n_moves = co_await moves;
+    const std::int64_t n_moves = co_await nomads.reduce<&Nomad::check>();
     TESS_CHECK(n_moves == 2 * n, n_moves, " migrations were made, not ", 2 * n);
     if (turn == 0) continue;
     by_epoch.add(epoch);

@@ -127,9 +127,7 @@ tess::Task play_match(tess::ArrayProxy<Player> players, Match match, double& res
   players[{0}].send<&Player::serve>(match, done.callback());
   const std::int64_t n_hits = co_await done;
   result = watch.nanoseconds() / (2.0 * static_cast<double>(match.n_round_trips));
-  tess::Future<std::int64_t> total;
-  players.broadcast<&Player::count>(total.callback());
-  const std::int64_t n_met = co_await total;
+  const std::int64_t n_met = co_await players.reduce<&Player::count>();
   TESS_CHECK(n_met == 2 * match.n_round_trips && (n_hits < 0 || n_hits == n_met),
              "the ball was met ", n_met, " times, not ", 2 * match.n_round_trips);
 }

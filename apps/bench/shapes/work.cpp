@@ -28,10 +28,8 @@ tess::Task measure_work(const Bench& bench, Samples& elapsed, Samples& busiest) 
   for (std::int32_t turn = 0; turn <= bench.repeat(); ++turn) {
     double took = 0, worked = 0;
     for (std::int32_t round = 0; round < n_rounds; ++round) {
-      tess::Future<std::vector<double>> done;
       const Stopwatch watch;
-      labourers.broadcast<&Labourer::work>(work, done.callback());
-      const std::vector<double> by_pe = co_await done;
+      const std::vector<double> by_pe = co_await labourers.reduce<&Labourer::work>(work);
       took += watch.nanoseconds();
       worked += *std::max_element(by_pe.begin(), by_pe.end());
       double sum = 0;

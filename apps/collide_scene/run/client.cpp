@@ -100,7 +100,7 @@ void Client::give_memory(tess::Callback<std::uint64_t> target) {
   const tess::PeId here = tess::my_pe();
   // All simulated processes share the memory of process 0.
   const bool first =
-      machine.process_of(here) == machine.process() && here.value % machine.pes_per_process() == 0;
+      machine.process_of(here) == machine.process() && machine.is_first_of_process(here);
   contribute(tess::sum, first ? peak_memory_bytes() : 0, std::move(target));
 }
 

@@ -66,13 +66,9 @@ tess::Task ParallelCollisions::step(int step, int repeat, StepResult& result,
     result.searched = statistics.searched;
     if (result.searched) last_ = statistics;
   }
-  tess::Future<Answer> answer;
-  clients_.broadcast<&Client::give_answer>(answer.callback());
-  result.answer = co_await answer;
+  result.answer = co_await clients_.reduce<&Client::give_answer>();
   if (pairs == nullptr) co_return;
-  tess::Future<std::vector<ScenePair>> found;
-  clients_.broadcast<&Client::give_pairs>(found.callback());
-  *pairs = co_await found;
+  *pairs = co_await clients_.reduce<&Client::give_pairs>();
 }
 
 tess::Task ParallelCollisions::end(RunResult& result) {
@@ -82,9 +78,7 @@ tess::Task ParallelCollisions::end(RunResult& result) {
   result.grid.entries = last_.n_entries;
   result.grid.left_out = last_.n_left_out;
   result.grid.pieces = last_.n_pieces;
-  tess::Future<std::uint64_t> bytes;
-  clients_.broadcast<&Client::give_memory>(bytes.callback());
-  result.peak_memory_bytes = co_await bytes;
+  result.peak_memory_bytes = co_await clients_.reduce<&Client::give_memory>();
   co_await tess::epoch([&] {
     collider_.destroy();
     clients_.destroy();

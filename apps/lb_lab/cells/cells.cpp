@@ -10,11 +10,9 @@ namespace lb_lab {
 namespace {
 
 tess::Task start_and_wait(tess::ArrayProxy<Worker> workers, Outcome& outcome) {
-  tess::Future<std::uint64_t> answer;
   const tess::Time began = tess::now();
   outcome.began = tess::seconds(began);
-  workers.broadcast<&Worker::begin>(answer.callback());
-  outcome.answer = co_await answer;
+  outcome.answer = co_await workers.reduce<&Worker::begin>();
   outcome.seconds = tess::seconds(tess::now() - began);
 }
 

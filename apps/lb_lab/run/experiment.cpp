@@ -28,9 +28,7 @@ tess::Task run(const Experiment& experiment, Outcome& outcome) {
   tess::GroupProxy<Station> stations;
   co_await tess::epoch([&] { stations = tess::create_group<Station>(experiment.plan); });
   co_await workload_of(experiment.plan.problem).kind->run(experiment, stations, outcome);
-  tess::Future<std::vector<PeRecord>> records;
-  stations.broadcast<&Station::give_record>(records.callback());
-  outcome.records = co_await records;
+  outcome.records = co_await stations.reduce<&Station::give_record>();
 }
 
 double imbalance(const Outcome& outcome, const Plan& plan, std::int32_t first, std::int32_t last) {

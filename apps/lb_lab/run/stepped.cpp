@@ -25,9 +25,7 @@ tess::Task run_stepped(const Experiment& experiment, tess::GroupProxy<Station> s
   outcome.seconds = tess::seconds(tess::now()) - outcome.began;
 
   co_await workload.end();
-  tess::Future<std::uint64_t> answer;
-  stations.broadcast<&Station::give_answer>(answer.callback());
-  outcome.answer = co_await answer;
+  outcome.answer = co_await stations.reduce<&Station::give_answer>();
   if (balances(experiment)) outcome.rounds = balancer.history();
 }
 

@@ -27,7 +27,7 @@ void Gauge::read(Callback<Footprint> target) {
   Footprint mine;
   mine.bytes_sent = statistics().bytes_sent;
   // All simulated processes share the memory of process 0.
-  if (machine.process_of(pe()) == machine.process() && pe().value % machine.pes_per_process() == 0)
+  if (machine.process_of(pe()) == machine.process() && machine.is_first_of_process(pe()))
     mine.peak_memory_bytes = mine.greatest_peak_memory_bytes = peak_memory_bytes();
   contribute(JoinFootprints{}, mine, std::move(target));
 }

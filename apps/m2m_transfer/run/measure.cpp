@@ -59,9 +59,7 @@ Task collect(Problem& problem, const std::vector<DistributedMesh>& meshes, const
 }  // namespace
 
 Task measure(Problem& problem, GroupProxy<Gauge> gauge, apps::Progress& progress) {
-  Future<Footprint> before, after, most;
-  gauge.broadcast<&Gauge::read>(before.callback());
-  const Footprint sent_before = co_await before;
+  const Footprint sent_before = co_await gauge.reduce<&Gauge::read>();
 
   progress.phase("partition");
   const Time start = now();
@@ -79,8 +77,7 @@ Task measure(Problem& problem, GroupProxy<Gauge> gauge, apps::Progress& progress
     for (std::size_t p = 0; p < problem.reports.size(); ++p)
       keep_fastest(problem.reports[p].seconds, graph->seconds()[p], round == 0);
     if (round == 0) {
-      gauge.broadcast<&Gauge::read>(after.callback());
-      const Footprint sent_after = co_await after;
+      const Footprint sent_after = co_await gauge.reduce<&Gauge::read>();
       for (TransferReport& report : problem.reports)
         report.footprint.bytes_sent = sent_after.bytes_sent - sent_before.bytes_sent;
     }
@@ -100,8 +97,7 @@ Task measure(Problem& problem, GroupProxy<Gauge> gauge, apps::Progress& progress
     co_await collect(problem, meshes, *graph);
   }
   co_await graph->destroy();
-  gauge.broadcast<&Gauge::read>(most.callback());
-  const Footprint peak = co_await most;
+  const Footprint peak = co_await gauge.reduce<&Gauge::read>();
   for (std::size_t p = 0; p < problem.reports.size(); ++p) {
     TransferReport& report = problem.reports[p];
     report.seconds.setup = setup;

@@ -44,9 +44,7 @@ Task place(const Problem& problem, TransferKind kind, std::int32_t n_parts,
 }
 
 Task gather(const DistributedMesh& mesh, std::size_t n_vertices, Gathered& out) {
-  Future<Outcome> outcome;
-  mesh.workers.broadcast<&Worker::gather>(outcome.callback());
-  const Outcome all = co_await outcome;
+  const Outcome all = co_await mesh.workers.reduce<&Worker::gather>();
   const std::size_t n_fields = mesh.n_components;
   out.status.assign(n_vertices, Status::outside);
   out.values.assign(n_fields, std::vector<double>(n_vertices));

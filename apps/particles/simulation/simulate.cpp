@@ -95,9 +95,9 @@ tess::Task simulate(std::shared_ptr<Stage> stage, RunResult& result, RunOptions 
   const auto blocks = tess::create<Block>(tess::sparse);
   const Shown shown{options.progress};
   const auto hand_out = [&] {
-    const std::int32_t each = tess::machine().pes_per_process();
-    for (std::int32_t first = 0; first < tess::n_pes(); first += each)
-      stations[tess::PeId{first}].send<&Station::take>(handle);
+    const tess::Machine& machine = tess::machine();
+    for (std::int32_t process = 0; process < machine.n_processes(); ++process)
+      stations[machine.first_pe(tess::ProcessId{process})].send<&Station::take>(handle);
   };
   co_await tess::epoch(hand_out);
   co_await build_fields(*stage, stations, shown);
@@ -128,14 +128,10 @@ tess::Task simulate(std::shared_ptr<Stage> stage, RunResult& result, RunOptions 
     stretch.ask = asked(scene, step);
     if (stretch.ask != Stretch::nothing) co_await tess::epoch(move);
     if ((stretch.ask & Stretch::measure) != 0) {
-      tess::Future<Measured> measured;
-      stations.broadcast<&Station::give_measured>(measured.callback());
-      result.rows.push_back({step, co_await measured});
+      result.rows.push_back({step, co_await stations.reduce<&Station::give_measured>()});
     }
     if ((stretch.ask & Stretch::trace) != 0) {
-      tess::Future<std::vector<Sample>> samples;
-      stations.broadcast<&Station::give_samples>(samples.callback());
-      std::vector<Sample> all = co_await samples;
+      std::vector<Sample> all = co_await stations.reduce<&Station::give_samples>();
       std::ranges::sort(all, {}, &Sample::id);
       result.trajectories.push_back({step, std::move(all)});
     }
@@ -153,9 +149,7 @@ tess::Task simulate(std::shared_ptr<Stage> stage, RunResult& result, RunOptions 
     step = to;
   }
   if (options.balance) result.rounds = balancer.history();
-  tess::Future<std::vector<Spent>> spent;
-  stations.broadcast<&Station::give_spent>(spent.callback());
-  for (const Spent& of_pe : co_await spent) {
+  for (const Spent& of_pe : co_await stations.reduce<&Station::give_spent>()) {
     result.loop_seconds += of_pe.rules, result.audit_seconds += of_pe.audit;
     result.fields.build_seconds = std::max(result.fields.build_seconds, of_pe.build);
   }

@@ -10,8 +10,8 @@ namespace {
 
 /// The PEs of this process: the first and how many.
 std::pair<std::int32_t, std::int32_t> pes_of_process() {
-  const std::int32_t each = tess::machine().pes_per_process();
-  return {tess::my_pe().value / each * each, each};
+  const tess::Machine& machine = tess::machine();
+  return {machine.first_pe(machine.process_of(tess::my_pe())).value, machine.pes_per_process()};
 }
 
 }  // namespace

@@ -44,8 +44,7 @@ class Payer : public Group<Payer> {
     }
   }
   void sum_up(ProcessGroupProxy<Purse> purses, Callback<std::int64_t> target) {
-    const Machine& machine = tess::machine();
-    const bool first = pe().value % machine.pes_per_process() == 0;
+    const bool first = tess::machine().is_first_of_process(pe());
     const std::int64_t total = purses.read([](const Purse& purse) { return purse.total(); });
     contribute(sum, first ? total : 0, std::move(target));
   }
@@ -65,9 +64,7 @@ Task pay_all(std::int64_t expected) {
     payers.broadcast<&Payer::pay>(purses, prices);
     purses.broadcast<&Purse::add>(1);
   });
-  Future<std::int64_t> total;
-  payers.broadcast<&Payer::sum_up>(purses, total.callback());
-  const std::int64_t sum = co_await total;
+  const std::int64_t sum = co_await payers.reduce<&Payer::sum_up>(purses);
   const std::int64_t all = expected + tess::machine().n_processes();
   ledger->trial.expect(sum == all, "the purses hold ", sum, ", not ", all);
   purses.destroy();

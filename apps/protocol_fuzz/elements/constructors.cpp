@@ -53,9 +53,7 @@ Task construct_all(Trial& trial, int n, int n_rounds) {
   trial.expect(n_created == n, n_created, " of ", n, " constructors' contributions are in the sum");
   trial.expect(n_members == trial.n_pes(), n_members, " members' contributions are in the sum");
   for (int round = 0; round < n_rounds; ++round) {
-    Future<int> given;
-    elements.broadcast<&NewElement::give>(given.callback());
-    const int n_given = co_await given;
+    const int n_given = co_await elements.reduce<&NewElement::give>();
     trial.expect(n_given == n, n_given, " of ", n, " contribute in round ", round);
   }
 }

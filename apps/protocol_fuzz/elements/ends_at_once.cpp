@@ -73,7 +73,7 @@ class Ender : public Group<Ender> {
   }
   void count(Callback<std::int64_t> n_met, Callback<std::int64_t> n_left) {
     contribute(sum, static_cast<std::int64_t>(met_.size()), std::move(n_met));
-    const bool first = pe().value % tess::machine().pes_per_process() == 0;
+    const bool first = tess::machine().is_first_of_process(pe());
     std::int64_t left = first ? n_alive.load() : 0;
     for (const Collections& one : met_)
       left += (one.array.ended() ? 0 : 1) + (one.group.local_or_null() == nullptr ? 0 : 1);

@@ -124,9 +124,7 @@ Task till(std::int32_t n_rounds) {
       totals[its.to] += its.value;
     }
     co_await epoch([&] { plots.broadcast<&Plot::give>(Round{round, all}); });
-    Future<Totals> found;
-    plots.broadcast<&Plot::report>(found.callback());
-    const Totals given = co_await found;
+    const Totals given = co_await plots.reduce<&Plot::report>();
     plan->trial.expect(given == Totals(totals.begin(), totals.end()), "round ", round, ": ",
                        given.size(), " totals, not those of ", totals.size(), " elements");
     co_await epoch([&] { change(plots, random, totals); });

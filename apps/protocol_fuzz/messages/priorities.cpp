@@ -66,7 +66,7 @@ class Marshal : public Group<Marshal> {
     shout(round);
     const Machine& machine = tess::machine();
     rush->receives = machine.n_processes() > 1 && machine.pes_per_process() > 1 &&
-                     pe().value % machine.pes_per_process() == 0;
+                     machine.is_first_of_process(pe());
     (void)charge(std::chrono::hours(1));
   }
   void shout(Round round) {

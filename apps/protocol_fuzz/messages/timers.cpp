@@ -130,9 +130,7 @@ Task drive(std::uint64_t seed) {
       if (round == 0) tickers.broadcast<&Ticker::begin>(of_round);
       clocks.broadcast<&Clock::light>(Fuse{of_round, static_cast<int>(of_round % 4)});
     });
-    Future<std::array<std::uint64_t, 4>> total;
-    clocks.broadcast<&Clock::report>(total.callback());
-    const auto [n_set, n_run, set, run] = co_await total;
+    const auto [n_set, n_run, set, run] = co_await clocks.reduce<&Clock::report>();
     shop->trial.expect(n_set == n_run, n_set, " timers were set, ", n_run, " have run");
     shop->trial.expect(set == run, "other timers have run than were set");
   }

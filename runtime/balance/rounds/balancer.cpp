@@ -130,7 +130,7 @@ void Balancer::end_if_over() {
 
 void Balancer::attached_everywhere(std::int64_t n_under_way) {
   attached_ = true;
-  if (when_attached_) when_attached_(0);
+  if (when_attached_) when_attached_();
   n_under_way_ += n_under_way;
   begin_if_ready();
 }
@@ -221,7 +221,7 @@ Task Balancer::reached(std::uint64_t /*n_elements*/) {
 
 Task Balancer::attached() {
   if (attached_) co_return;
-  Future<std::uint64_t> everywhere;
+  Future<void> everywhere;
   when_attached_ = everywhere.callback();
   co_await everywhere;
 }
@@ -236,9 +236,7 @@ Task Balancer::begin_phase() {
 }
 
 Task Balancer::forget_all(Phase phase) {
-  Future<std::uint64_t> forgotten;
-  group().broadcast<&Balancer::forget>(phase, forgotten.callback());
-  co_await forgotten;
+  co_await group().reduce<&Balancer::forget>(phase);
 }
 
 // The phase that a checkpoint interrupted counts if it was at least half as long as the last one.
@@ -250,13 +248,9 @@ Task Balancer::place_again() {
       "begin by themselves and round() is not called");
   running_ = true;
   co_await attached();
-  Future<PastLoad> summed;
-  group().broadcast<&Balancer::sum_past>(summed.callback());
-  const PastLoad past = co_await summed;
-  Future<std::uint64_t> recalled;
-  group().broadcast<&Balancer::recall>(2 * past.since_then >= past.of_last_phase,
-                                       recalled.callback());
-  const std::uint64_t n_known = co_await recalled;
+  const PastLoad past = co_await group().reduce<&Balancer::sum_past>();
+  const std::uint64_t n_known =
+      co_await group().reduce<&Balancer::recall>(2 * past.since_then >= past.of_last_phase);
   if (n_known != 0) {
     co_await round(Others::fixed);
     measured_.round_ends();
@@ -277,9 +271,7 @@ Task Balancer::phase_ends(Others others) {
   co_await attached();
   bool worth = true;
   if (plan_.when == BalanceWhen::automatic) {
-    Future<PhaseSums> sums;
-    group().broadcast<&Balancer::sum_up>(others, sums.callback());
-    const PhaseSums phase = co_await sums;
+    const PhaseSums phase = co_await group().reduce<&Balancer::sum_up>(others);
     worth = coordinator_->worth(phase);
   }
   if (worth) {
@@ -381,9 +373,7 @@ std::vector<std::vector<Move>> Balancer::decide(const std::vector<PeReport>& rep
 }
 
 Task Balancer::central_round(Others others) {
-  Future<std::vector<PeReport>> collected;
-  group().broadcast<&Balancer::collect>(others, collected.callback());
-  const std::vector<PeReport> reports = co_await collected;
+  const std::vector<PeReport> reports = co_await group().reduce<&Balancer::collect>(others);
   std::vector<std::vector<Move>> moves = decide(reports);
   co_await epoch([&] {
     for (std::size_t to = 0; to < moves.size(); ++to)
@@ -392,19 +382,15 @@ Task Balancer::central_round(Others others) {
 }
 
 Task Balancer::distributed_round(Others others) {
-  Future<PhaseSums> prepared;
-  group().broadcast<&Balancer::prepare>(others, prepared.callback());
-  const PhaseSums before = co_await prepared;
+  const PhaseSums before = co_await group().reduce<&Balancer::prepare>(others);
   const double average = before.average_time();
-  Future<std::uint64_t> traded;
+  Future<void> traded;
   plan_.exchange[pe()].send<&Exchange::run>(
       Exchange::Order{plan_.distributed, average, before.mean_load(), coordinator_->options().seed},
       traded.callback());
   co_await traded;
   co_await epoch([this] { group().broadcast<&Balancer::fetch>(); });
-  Future<Outcome> summed;
-  group().broadcast<&Balancer::sum_outcome>(summed.callback());
-  const Outcome outcome = co_await summed;
+  const Outcome outcome = co_await group().reduce<&Balancer::sum_outcome>();
   Round round;
   round.n_elements = outcome.n_elements;
   round.n_unknown = before.n_unknown;
@@ -437,12 +423,12 @@ void Balancer::resume(std::uint32_t round) {
   barrier_.resume(round);
 }
 
-void Balancer::forget(Phase phase, const Callback<std::uint64_t>& done) {
+void Balancer::forget(Phase phase, const Callback<void>& done) {
   if (phase == Phase::ends)
     measured_.pass_phase();
   else
     measured_.clear();
-  contribute(sum, std::uint64_t{0}, done);
+  contribute(done);
 }
 
 void Balancer::sum_past(const Callback<PastLoad>& target) {

@@ -97,7 +97,7 @@ class Balancer final : public Group<Balancer>, private ElementWatcher {
   void resume(std::uint32_t round);
   /// A phase ends without a round, or begins behind something else.
   enum class Phase : std::uint8_t { ends, begins };
-  void forget(Phase phase, const Callback<std::uint64_t>& done);
+  void forget(Phase phase, const Callback<void>& done);
   void sum_past(const Callback<PastLoad>& target);
   void recall(bool interrupted, const Callback<std::uint64_t>& done);
   void prepare(Others others, const Callback<PhaseSums>& target);
@@ -152,10 +152,10 @@ class Balancer final : public Group<Balancer>, private ElementWatcher {
   std::uint32_t barriers_ = 0;   // rounds at barriers that are over
   std::uint32_t n_reached_ = 0;  // barriers reached whose rounds are not over
   std::uint64_t n_rounds_ = 0;
-  std::int64_t n_under_way_ = 0;           // elements that left a PE before balancing started there
-  bool attached_ = false;                  // all PEs are attached
-  Callback<std::uint64_t> when_attached_;  // target for a round that waits for it
-  bool ready_ = false;                     // all members of round 0 are known
+  std::int64_t n_under_way_ = 0;  // elements that left a PE before balancing started there
+  bool attached_ = false;         // all PEs are attached
+  Callback<void> when_attached_;  // target for a round that waits for it
+  bool ready_ = false;            // all members of round 0 are known
   bool running_ = false;
   std::size_t n_moving_ = 0;  // periodic: PEs that have not begun the round's moves yet, and 1
   Time round_began_{0};

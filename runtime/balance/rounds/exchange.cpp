@@ -64,22 +64,19 @@ std::vector<Item> Exchange::arrived() const {
   return items;
 }
 
-Task Exchange::run(Order order, Callback<std::uint64_t> done) {
-  n_all_ = 0;
+Task Exchange::run(Order order, Callback<void> done) {
   if (order.strategy == DistributedStrategy::diffusion) {
     co_await run_diffusion(order);
   } else {
     co_await run_gossip(order);
   }
-  done(n_all_);
+  done();
 }
 
 Task Exchange::run_diffusion(Order order) {
   for (std::uint64_t number = 0; number < most_sweeps; ++number) {
-    Future<std::uint64_t> trades;
-    group().broadcast<&Exchange::sweep>(Sweep{number, order.mean_load}, trades.callback());
-    const std::uint64_t n = co_await trades;
-    n_all_ += n;
+    const Sweep next{number, order.mean_load};
+    const std::uint64_t n = co_await group().reduce<&Exchange::sweep>(next);
     if (n == 0) break;
   }
 }
@@ -145,42 +142,31 @@ void Exchange::hear(Talk talk) {
 Task Exchange::run_gossip(Order order) {
   const auto n_pes = static_cast<std::size_t>(current_pe().n_pes());
   const auto n_rounds = static_cast<int>((std::bit_width(n_pes) + 1) / 2);
-  Future<std::uint64_t> begun;
-  group().broadcast<&Exchange::begin_gossip>(order, begun.callback());
-  co_await begun;
+  co_await group().reduce<&Exchange::begin_gossip>(order);
   for (int iteration = 0; iteration < most_iterations; ++iteration) {
-    Future<std::uint64_t> forgot;
-    group().broadcast<&Exchange::begin_iteration>(forgot.callback());
-    co_await forgot;
-    for (int round = 0; round < n_rounds; ++round) {
-      Future<std::uint64_t> told;
-      group().broadcast<&Exchange::spread>(told.callback());
-      co_await told;
-    }
-    Future<std::uint64_t> trades;
-    group().broadcast<&Exchange::offer_all>(trades.callback());
-    const std::uint64_t n = co_await trades;
-    n_all_ += n;
+    co_await group().reduce<&Exchange::begin_iteration>();
+    for (int round = 0; round < n_rounds; ++round) co_await group().reduce<&Exchange::spread>();
+    const std::uint64_t n = co_await group().reduce<&Exchange::offer_all>();
     if (n == 0) break;
   }
 }
 
-void Exchange::begin_gossip(Order order, const Callback<std::uint64_t>& done) {
+void Exchange::begin_gossip(Order order, const Callback<void>& done) {
   weigh_unknown(order.mean_load);
   gossip_ = std::make_unique<GossipPe>(*local_, slot(pe()), order.average_time, order.seed);
-  contribute(sum, std::uint64_t{0}, done);
+  contribute(done);
 }
 
-void Exchange::begin_iteration(const Callback<std::uint64_t>& done) {
+void Exchange::begin_iteration(const Callback<void>& done) {
   gossip_->begin_iteration();
-  contribute(sum, std::uint64_t{0}, done);
+  contribute(done);
 }
 
-void Exchange::spread(const Callback<std::uint64_t>& done) {
+void Exchange::spread(const Callback<void>& done) {
   const auto n_pes = static_cast<std::size_t>(current_pe().n_pes());
   for (std::size_t k = 0; k < fanout && !gossip_->tell().empty(); ++k)
     group()[pe_at(gossip_->random_peer(n_pes))].send<&Exchange::rumour>(gossip_->tell());
-  contribute(sum, std::uint64_t{0}, done);
+  contribute(done);
 }
 
 void Exchange::rumour(const std::vector<Rumour>& rumours) {

@@ -50,8 +50,8 @@ class Exchange final : public Group<Exchange> {
     double mean_load = 0;     ///< weight of an element with unknown load, at speed 1
     std::uint64_t seed = 1;   ///< of gossip's random peers
   };
-  /// On one member: makes all members carry out the strategy; `done` receives the number of trades.
-  Task run(Order order, Callback<std::uint64_t> done);
+  /// On one member: makes all members carry out the strategy; `done` is called when they have.
+  Task run(Order order, Callback<void> done);
 
   /// After run(): the items here that another PE reported.
   [[nodiscard]] std::vector<Item> arrived() const;
@@ -84,9 +84,9 @@ class Exchange final : public Group<Exchange> {
   };
   Task sweep(Sweep sweep, Callback<std::uint64_t> n_trades);
   void hear(Talk talk);
-  void begin_gossip(Order order, const Callback<std::uint64_t>& done);
-  void begin_iteration(const Callback<std::uint64_t>& done);
-  void spread(const Callback<std::uint64_t>& done);
+  void begin_gossip(Order order, const Callback<void>& done);
+  void begin_iteration(const Callback<void>& done);
+  void spread(const Callback<void>& done);
   void rumour(const std::vector<Rumour>& rumours);
   Task offer_all(Callback<std::uint64_t> n_trades);
   void propose(const Proposal& proposal);
@@ -106,7 +106,6 @@ class Exchange final : public Group<Exchange> {
   Mailbox<&Reply::key> replies_;
   std::uint64_t n_trades_ = 0;  // trades of this PE in this sweep or iteration
   std::uint64_t n_offers_ = 0;
-  std::uint64_t n_all_ = 0;  // on the member that called run()
 };
 
 }  // namespace tess::balance

@@ -68,9 +68,7 @@ Task collide_crowds(std::int32_t n_boxes, bool in_pieces, Models models, PairRul
   });
   co_await epoch([&] { crowds.broadcast<&Crowd::submit>(collider, n_boxes, in_pieces, models); });
   co_await run_collision(collider, {report_to<&Crowd::receive>(crowds), {}});
-  Future<std::vector<std::uint64_t>> all;
-  crowds.broadcast<&Crowd::gather>(all.callback());
-  received = co_await all;
+  received = co_await crowds.reduce<&Crowd::gather>();
 }
 
 /// Of n boxes per crowd: pairs (i, j) of the two crowds, and the pairs within one.

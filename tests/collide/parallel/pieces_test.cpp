@@ -113,13 +113,9 @@ Task collide_needles(NeedleScene setting, NeedlePairs& outcome) {
   co_await epoch([&] { clients.broadcast<&NeedleOwner::submit>(collider); });
   const Report report{report_to<&NeedleOwner::receive>(clients), {}, Receivers::one_owner};
   co_await run_collision(collider, report);
-  Future<std::vector<std::uint64_t>> pairs;
-  clients.broadcast<&NeedleOwner::give_pairs>(pairs.callback());
-  outcome.pairs = co_await pairs;
+  outcome.pairs = co_await clients.reduce<&NeedleOwner::give_pairs>();
   std::sort(outcome.pairs.begin(), outcome.pairs.end());
-  Future<std::uint64_t> n_hits;
-  clients.broadcast<&NeedleOwner::give_hits>(n_hits.callback());
-  outcome.n_hits = co_await n_hits;
+  outcome.n_hits = co_await clients.reduce<&NeedleOwner::give_hits>();
   Future<CollisionStatistics> statistics;
   report_statistics(collider, statistics.callback());
   outcome.statistics = co_await statistics;
@@ -246,9 +242,7 @@ std::int64_t n_received(const TwoObjects& objects, const ColliderOptions& option
     co_await epoch([&] { owners.broadcast<&OwnerOfOne::submit>(collider, objects); });
     const Report report{report_to<&OwnerOfOne::receive>(owners), {}};
     co_await run_collision(collider, report);
-    Future<std::int64_t> total;
-    owners.broadcast<&OwnerOfOne::give>(total.callback());
-    n = co_await total;
+    n = co_await owners.reduce<&OwnerOfOne::give>();
   };
   test::Machine{.pes = 2, .per_process = 1, .seed = 3}.run(program).require_success();
   return n;

@@ -146,9 +146,8 @@ Task collide_round(Collider collider, ArrayProxy<Client> clients, std::int32_t r
   const Report report{report_to<&Client::receive>(clients), only, receivers_in(round)};
   co_await epoch([&] { clients.broadcast<&Client::submit>(collider, round); });
   co_await run_collision(collider, report);
-  Future<Answer> done;
-  clients.broadcast<&Client::gather>(done.callback());
-  const Answer answer = co_await done, expected = oracle(n_clients, round, only);
+  const Answer answer = co_await clients.reduce<&Client::gather>(),
+               expected = oracle(n_clients, round, only);
   TESS_CHECK(answer == expected, "round ", round, ": ", answer.n, " hits were reported, ",
              expected.n, " are right, or others than those");
 }

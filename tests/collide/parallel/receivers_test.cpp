@@ -63,9 +63,7 @@ std::vector<std::int64_t> received(const std::string& option, Receivers receiver
     co_await epoch([&] { rows.broadcast<&Row::submit>(collider, n_each); });
     const Report report{report_to<&Row::receive>(rows), {}, receivers};
     co_await run_collision(collider, report);
-    Future<std::vector<std::int64_t>> all;
-    rows.broadcast<&Row::gather>(all.callback());
-    counts = co_await all;
+    counts = co_await rows.reduce<&Row::gather>();
   };
   REQUIRE(run(setup, [&]() -> Task { return program(); }) == 0);
   REQUIRE(counts.size() == 2);
@@ -114,9 +112,7 @@ std::vector<std::array<std::int32_t, 4>> of_model(const std::string& option, Mod
     co_await epoch([&] { clients.broadcast<&Mixed::submit>(collider, boxes_of_each); });
     const Report report{report_to<&Mixed::receive>(clients), only};
     co_await run_collision(collider, report);
-    Future<std::vector<std::array<std::int32_t, 4>>> all;
-    clients.broadcast<&Mixed::gather>(all.callback());
-    pairs = co_await all;
+    pairs = co_await clients.reduce<&Mixed::gather>();
   };
   REQUIRE(run(setup, [&]() -> Task { return program(); }) == 0);
   for (auto& [owner, other, mine, theirs] : pairs)

@@ -56,9 +56,7 @@ unsigned long long n_sent(std::int32_t n_houses, std::int32_t n_collisions) {
       co_await epoch([&] { streets.broadcast<&Street::submit>(collider, n_houses); });
       co_await run_collision(collider, report);
     }
-    Future<std::uint64_t> all;
-    streets.broadcast<&Street::count>(all.callback());
-    n_pairs = co_await all;
+    n_pairs = co_await streets.reduce<&Street::count>();
   };
   REQUIRE(run(setup, [&]() -> Task { return program(); }) == 0);
   REQUIRE(n_pairs == 9 * static_cast<std::uint64_t>(n_houses * n_collisions));

@@ -157,15 +157,11 @@ Task begin(const Moving& scene, const ColliderOptions& options, Movers& out) {
 }
 
 Task give_all(const Movers& movers, Outcome& outcome) {
-  Future<Reports> all;
-  movers.clients.broadcast<&Mover::give>(all.callback());
-  outcome.steps.push_back(in_order(co_await all));
+  outcome.steps.push_back(in_order(co_await movers.clients.reduce<&Mover::give>()));
 }
 
 Task end(const Movers& movers, Outcome& outcome) {
-  Future<std::string> refused;
-  movers.clients.broadcast<&Mover::give_refused>(refused.callback());
-  outcome.refused = co_await refused;
+  outcome.refused = co_await movers.clients.reduce<&Mover::give_refused>();
   co_await epoch([&] {
     movers.collider.destroy();
     movers.clients.destroy();

@@ -10,9 +10,7 @@ class Cell : public tess::Chare<Cell> {
 
 tess::Task total() {
   const auto cells = tess::create<Cell>(tess::range(10));
-  tess::Future<int> sum;
-  cells.broadcast<&Cell::add>(2, sum.callback());
-  tess::print("sum ", co_await sum, "\n");
+  tess::print("sum ", co_await cells.reduce<&Cell::add>(2), "\n");
 }
 
 int main(int argc, char** argv) {

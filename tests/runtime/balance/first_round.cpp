@@ -53,9 +53,7 @@ struct Outcome {
 tess::Task balance_by(const std::string& strategy, Outcome* outcome) {
   const auto blocks = tess::create<Block>(tess::range(n_chares));
   const tess::BalancerProxy balancer = tess::start_balancing(blocks, {.strategy = strategy});
-  tess::Future<std::vector<std::int64_t>> placed;
-  blocks.broadcast<&Block::step>(placed.callback());
-  const std::vector<std::int64_t> loads = co_await placed;
+  const std::vector<std::int64_t> loads = co_await blocks.reduce<&Block::step>();
   double most = 0, sum = 0;
   for (const std::int64_t load : loads) {
     most = std::max(most, static_cast<double>(load));

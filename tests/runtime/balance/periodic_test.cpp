@@ -47,9 +47,7 @@ Task keep_busy(BusyOutcome& outcome) {
   const auto workers = create<BusyWorker>(range(n_busy_workers));
   const auto balancer = start_balancing(
       workers, {.strategy = "greedy_refine", .when = BalanceWhen::periodic, .period = 100ms});
-  Future<int> done;
-  workers.broadcast<&BusyWorker::work>(n_busy_tasks, done.callback());
-  outcome.n_done = co_await done;
+  outcome.n_done = co_await workers.reduce<&BusyWorker::work>(n_busy_tasks);
   outcome.rounds = balancer.history();
 }
 

@@ -46,9 +46,7 @@ struct Outcome {
 Task run_phases(balance::Strategy strategy, Outcome& outcome) {
   const auto chares = create<Phased>(range(12));
   const auto balancer = start_balancing(chares, {}, strategy);
-  Future<int> phases;
-  chares.broadcast<&Phased::begin>(phases.callback());
-  outcome.n_phases = co_await phases;
+  outcome.n_phases = co_await chares.reduce<&Phased::begin>();
   for (const balance::Round& round : balancer.history()) outcome.n_moves += round.n_moved;
 }
 

@@ -46,9 +46,7 @@ struct Bricks {
 };
 
 tess::Task phase(tess::ArrayProxy<Brick> bricks) {
-  tess::Future<int> done;
-  bricks.broadcast<&Brick::work>(done.callback());
-  co_await done;
+  co_await bricks.reduce<&Brick::work>();
 }
 
 using Rounds = std::vector<tess::balance::Round>;

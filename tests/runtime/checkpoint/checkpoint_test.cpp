@@ -151,9 +151,7 @@ struct Totals {
   }
 
   tess::Task step() {
-    tess::Future<int> sum;
-    cells.broadcast<&CountsSteps::step>(sum.callback());
-    const int found = co_await sum;
+    const int found = co_await cells.reduce<&CountsSteps::step>();
     total += found;
   }
   static tess::Task save_beside_a_step(const std::string& folder) {
@@ -165,9 +163,7 @@ struct Totals {
   }
   static tess::Task restart(const std::string& folder, int& total, int& in_cells) {
     const auto state = co_await tess::restart<Totals>(folder);
-    tess::Future<int> sum;
-    state.cells.broadcast<&CountsSteps::report>(sum.callback());
-    in_cells = co_await sum;
+    in_cells = co_await state.cells.reduce<&CountsSteps::report>();
     total = state.total;
   }
 };

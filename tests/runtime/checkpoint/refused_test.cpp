@@ -265,9 +265,7 @@ struct Restarting {
   }
   static tess::Task restart(const std::string& folder, int& sum) {
     const auto state = co_await tess::restart<State>(folder);
-    tess::Future<int> total;
-    state.tables.broadcast<&Table::sum>(total.callback());
-    const int found = co_await total;
+    const int found = co_await state.tables.reduce<&Table::sum>();
     sum = found;
   }
   static tess::Task restart_with_future(const std::string& folder) {
@@ -369,9 +367,7 @@ class Beat : public tess::Chare<Beat> {
 struct Balanced {
   static tess::Task phases(const tess::ArrayProxy<Beat>& beats, int n, int& sum) {
     for (int i = 0; i < n; ++i) {
-      tess::Future<int> total;
-      beats.broadcast<&Beat::start>(total.callback());
-      const int found = co_await total;
+      const int found = co_await beats.reduce<&Beat::start>();
       sum = found;
     }
   }

@@ -89,9 +89,7 @@ tess::Task use(std::string folder) {
         state.makers[{i}].send<&Maker::call>(static_cast<std::size_t>(section),
                                              section == 0 ? 1 : 100);
   });
-  tess::Future<std::vector<int>> hits;
-  state.makers.broadcast<&Maker::report>(hits.callback());
-  const std::vector<int> found = co_await hits;
+  const std::vector<int> found = co_await state.makers.reduce<&Maker::report>();
   CHECK(found == std::vector<int>(n, 202));  // each is in two sections of either kind
   for (const std::size_t array : {0U, 1U}) {
     tess::Future<int> n_leaves;

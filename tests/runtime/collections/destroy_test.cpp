@@ -195,9 +195,7 @@ tess::Task rise(int from, bool rises, int& life, int& sum) {
   });
   co_await tess::epoch([&] { birds[{0}].destroy(); });
   if (rises) life = co_await birds[{0}].ask<&Phoenix::life>();
-  tess::Future<int> all;
-  birds.broadcast<&Phoenix::count>(all.callback());
-  sum = co_await all;
+  sum = co_await birds.reduce<&Phoenix::count>();
 }
 
 TEST_CASE("a destructor inserts at its own index, or sends there", "[runtime][destroy]") {

@@ -29,9 +29,7 @@ tess::Task use_both(std::int64_t& total) {
   tess::Future<void> passed;
   co_await tess::epoch([&] { members.broadcast<&Member::pass>(blocks, passed.callback()); });
   co_await passed;
-  tess::Future<std::int64_t> sum;
-  blocks.broadcast<&Block::sum>(sum.callback());
-  total += co_await sum;
+  total += co_await blocks.reduce<&Block::sum>();
 }
 
 tess::Task use_both_often(tess::test::Growth& growth, std::int64_t& total) {

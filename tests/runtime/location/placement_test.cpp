@@ -82,9 +82,7 @@ tess::Task count_from_everywhere(const std::vector<Index>& indices, Counts& foun
   const auto demanders = tess::create_group<Demander<Index>>();
   co_await tess::epoch(
       [&] { demanders.template broadcast<&Demander<Index>::send>(tallies, indices); });
-  tess::Future<Counts> all;
-  tallies.template broadcast<&Tally<Index>::report>(all.callback());
-  found = co_await all;
+  found = co_await tallies.template reduce<&Tally<Index>::report>();
   std::ranges::sort(found);
 }
 
@@ -97,9 +95,7 @@ Counts counts(std::uint64_t seed, const std::vector<Index>& indices) {
 
 tess::Task deal(Places& found) {
   const auto dealt = tess::create<Dealt>(tess::range(10));
-  tess::Future<Places> all;
-  dealt.broadcast<&Dealt::report>(all.callback());
-  found = co_await all;
+  found = co_await dealt.reduce<&Dealt::report>();
 }
 
 }  // namespace

@@ -154,7 +154,7 @@ class Tour final : public Program {
     for (std::int32_t process = machine_.n_processes() - 1; process >= 0; --process) {
       auto* const token = new Token;
       token->stamp.kind = 2;
-      token->stamp.to = process * machine_.pes_per_process();
+      token->stamp.to = machine_.first_pe(ProcessId{process}).value;
       dispatch(pe, token);
     }
   }

@@ -64,6 +64,17 @@ TEST_CASE("the options of the simulated machine are read with their units",
   CHECK_FALSE(tess::parse_simulated("cost=measured").cost.has_value());
 }
 
+TEST_CASE("the PEs of a process begin with its first one", "[runtime][simulated]") {
+  const auto machine = tess::make_simulated_machine(tess::parse_simulated("pes=9,per-process=3"));
+  REQUIRE(machine->n_processes() == 3);
+  for (std::int32_t i = 0; i < machine->n_pes(); ++i) {
+    const tess::PeId pe{i};
+    INFO("PE " << i);
+    CHECK(machine->first_pe(machine->process_of(pe)) == tess::PeId{i - i % 3});
+    CHECK(machine->is_first_of_process(pe) == (i % 3 == 0));
+  }
+}
+
 TEST_CASE("a bad option of the simulated machine is named", "[runtime][simulated]") {
   for (const char* bad :
        {"pes=0", "pes=many", "pes", "latency=-1us", "latency=1h", "bandwidth=0", "bandwidth=1e-9",

@@ -59,9 +59,7 @@ tess::Task iterate(IterationTimes& times) {
   nanoseconds began{0};
   for (std::int32_t round = 0; round <= n_rounds; ++round) {
     if (round == 1) began = tess::now();  // the first waits for the array, too
-    tess::Future<std::int64_t> done;
-    shifts.broadcast<&Shift::work>(done.callback());
-    const std::int64_t n = co_await done;
+    const std::int64_t n = co_await shifts.reduce<&Shift::work>();
     TESS_CHECK(n == n_each * tess::n_pes(), n, " chares worked");
   }
   times.mean = (tess::now() - began) / n_rounds;

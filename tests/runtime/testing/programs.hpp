@@ -87,9 +87,7 @@ inline Task count_calls(int& n) {
   const auto all = create<Reporter>(range(n_reporters));
   for (int round = 0; round < n_rounds; ++round)
     co_await epoch([&] { all.broadcast<&Reporter::report>(); });
-  Future<int> counted;
-  all.broadcast<&Reporter::count>(counted.callback());
-  n = co_await counted;
+  n = co_await all.reduce<&Reporter::count>();
 }
 
 /// Keeps the address of a neighbour that may migrate.
