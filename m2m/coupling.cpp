@@ -1,6 +1,7 @@
 #include "m2m/coupling.hpp"
 
 #include "m2m/parallel/messages.hpp"
+#include "m2m/parallel/turns.hpp"
 #include "runtime/core/error.hpp"
 
 #include <algorithm>
@@ -92,6 +93,7 @@ struct AnyCoupling::State {
   CouplingOptions options;
   CouplingSetup setup{};
   UnderWay under_way{};
+  std::shared_ptr<Turns> turns{};  ///< since the first search
 
   [[nodiscard]] bool is_conservative() const { return m2m::is_conservative(options.kind); }
   /// The pieces of the target exchange values of ghosts.
@@ -130,6 +132,7 @@ struct AnyCoupling::State {
     if (has_directory()) setup.directory = create_group<PointDirectory>();
     // Each coupling has its own collider.
     setup.id = CouplingId{setup.collider.voxels.id().value};
+    turns = std::make_shared<Turns>();
   }
   [[nodiscard]] std::vector<std::byte> target_bytes() const {
     return to_bytes(std::tuple(target, setup.id));
@@ -280,12 +283,15 @@ Task AnyCoupling::apply(detail::Giver give, detail::Taker take) {
              "co_await search() first");
   TESS_CHECK(state.under_way.n_searches == 0,
              "a coupling is applied while a search of it is under way: co_await that first");
-  state.require_usable("applied");
   const Counted counted(state.under_way.n_applications);
+  const std::shared_ptr<Turns> turns = state.turns;
+  co_await turns->take(take->channel);
+  state.require_usable("applied");
   co_await epoch([&, id = setup.id] {
     setup.source.broadcast<&AnyPiece::m2m_give_values>(id, give, take);
     setup.target.broadcast<&AnyPiece::m2m_take_if_alone>(id, take);
   });
+  turns->pass_on(take->channel);
 }
 
 }  // namespace tess::m2m
