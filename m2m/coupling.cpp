@@ -163,6 +163,9 @@ const collide::Collider& AnyCoupling::collider() const {
   return state_->setup.collider;
 }
 const CouplingSetup& AnyCoupling::setup() const {
+  TESS_CHECK(state_->under_way.n_searches == 0,
+             "the donors of a coupling are used while a search of it is under way: co_await that "
+             "first");
   return state_->setup;
 }
 

@@ -110,7 +110,8 @@ class AnyCoupling {
   [[nodiscard]] CouplingId id() const;
   /// Finds the pieces that are near (collide/collider.hpp). Valid after the first search.
   [[nodiscard]] const collide::Collider& collider() const;
-  /// For what is built on couplings, such as coupling_weights.hpp. Valid after the first search.
+  /// For what uses the donors, such as coupling_weights.hpp. After the first search, while no other
+  /// one is under way.
   [[nodiscard]] const CouplingSetup& setup() const;
 
   /// Finds the donors. The pieces and their coordinates stay as they are until it is done, and no

@@ -157,7 +157,11 @@ void AnyPiece::m2m_give_rows(CouplingId id, GroupProxy<RowBook> book) {
 }
 void AnyPiece::m2m_take_rows(GivenRows given) {
   const MeshView mesh = m2m_view();
-  for (const std::int32_t row : m2m_sides().target(given.coupling).rows_from(given.from))
+  const TargetSide& to = m2m_sides().target(given.coupling);
+  TESS_CHECK(mesh.n_owned == std::ssize(to.status()), "a piece owns ", mesh.n_owned,
+             " points, and owned ", to.status().size(),
+             " in the last search of the coupling: search again when points change");
+  for (const std::int32_t row : to.rows_from(given.from))
     given.rows.targets.push_back(mesh.point_ids[static_cast<std::size_t>(row)]);
   given.book.local().add(given.rows);
 }
