@@ -53,7 +53,8 @@ void AnyPiece::m2m_receive_donors(const DonorAnswer& answer) {
 void AnyPiece::m2m_name_source(CouplingId id) {
   const MeshView mesh = m2m_view();
   m2m_sides().source(id).setup.ledger.local().add(SourcePiece{
-      m2m_owner(), box_of_nearest(mesh), static_cast<std::uint8_t>(mesh.tets.empty() ? 0 : 1)});
+      m2m_owner(), box_of_nearest(mesh), static_cast<std::uint8_t>(mesh.points.empty() ? 0 : 1),
+      static_cast<std::uint8_t>(mesh.tets.empty() ? 0 : 1)});
 }
 void AnyPiece::m2m_ask_nearest(CouplingId id, const std::vector<SourcePiece>& sources) {
   TargetSide& to = m2m_sides().target(id);

@@ -15,12 +15,12 @@
 
 namespace tess::m2m {
 
-/// A source piece, whether it has tetrahedra, and the box around the points that it owns: with
-/// tetrahedra those that they use, since no other point is the nearest.
+/// A source piece, whether it has points and tetrahedra, and the box around the points that it
+/// owns: with tetrahedra those that they use, since no other point is the nearest.
 struct SourcePiece {
   collide::OwnerId owner{};
   Aabb box{};
-  std::uint8_t has_tets = 0;
+  std::uint8_t has_points = 0, has_tets = 0;
 };
 
 struct LedgerPage {
