@@ -213,8 +213,8 @@ Task AnyCoupling::search(SearchSummary* summary) {
   } else {
     co_await find_donors(found);
   }
-  // Source pieces of conservative kinds have entered their names; otherwise the points of such
-  // target pieces are outside, so that all source pieces were named.
+  // Source pieces of conservative kinds have entered their names; otherwise they were named, since
+  // such target pieces were found.
   if (found.n_alone > 0 && found.least_source)
     co_await epoch([&, source = *found.least_source] {
       state.setup.target.broadcast<&AnyPiece::m2m_attach_if_alone>(state.setup.id, source);
@@ -246,18 +246,20 @@ Task AnyCoupling::collide_covers() {
   co_await collide::run_collision(setup.collider, to_target);
 }
 
-/// Only points that are in no tetrahedron need to know all source pieces.
+/// Only points that are in no tetrahedron need to know all source pieces, and pieces without sources
+/// one of them.
 Task AnyCoupling::find_donors(LedgerPage& found) {
   const CouplingSetup& setup = state_->setup;
   co_await epoch([&] { setup.target.broadcast<&AnyPiece::m2m_ask>(setup.id); });
   co_await close_page(setup.ledger, &found);
-  if (found.n_waiting == 0) co_return;
+  if (found.n_waiting == 0 && found.n_alone == 0) co_return;
   co_await epoch([&] { setup.source.broadcast<&AnyPiece::m2m_name_source>(setup.id); });
   LedgerPage page;
   co_await close_page(setup.ledger, &page);
   std::sort(page.sources.begin(), page.sources.end(),
             [](const SourcePiece& a, const SourcePiece& b) { return a.owner < b.owner; });
   if (!page.sources.empty()) found.least_source = page.sources.front().owner;
+  if (found.n_waiting == 0) co_return;
   co_await epoch(
       [&] { setup.target.broadcast<&AnyPiece::m2m_ask_nearest>(setup.id, page.sources); });
   co_await close_page(setup.ledger, &page);

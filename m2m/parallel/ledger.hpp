@@ -28,7 +28,7 @@ struct LedgerPage {
   WorstPlaces worst;
   std::uint64_t n_waiting = 0;  ///< target pieces with points that need the nearest vertex
   std::vector<SourcePiece> sources;
-  std::uint64_t n_alone = 0;                     ///< target pieces without sources
+  std::uint64_t n_alone = 0;  ///< target pieces that no source piece gives values
   std::optional<collide::OwnerId> least_source;  ///< of all source pieces
 
   LedgerPage& operator+=(const LedgerPage& other) {

@@ -32,7 +32,8 @@ consteval bool check_piece() {
 
 /// A second base class of a chare that holds a piece of a mesh. The chare has a member function
 /// `MeshView mesh_view() const`; if it migrates, it serialises `couplings`. If it has a member
-/// function `received(CouplingId)`, that is called after new values were written.
+/// function `received(CouplingId)`, that is called after new values were written: once per round,
+/// also if the piece has no point or no point got a value.
 template <class C>
 class Piece : public AnyPiece {
  public:
