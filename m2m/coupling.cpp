@@ -1,6 +1,7 @@
 #include "m2m/coupling.hpp"
 
 #include "m2m/parallel/messages.hpp"
+#include "m2m/parallel/turns.hpp"
 #include "runtime/core/error.hpp"
 
 #include <algorithm>
@@ -92,6 +93,7 @@ struct AnyCoupling::State {
   CouplingOptions options;
   CouplingSetup setup{};
   UnderWay under_way{};
+  std::shared_ptr<Turns> turns{};  ///< since the first search
 
   [[nodiscard]] bool is_conservative() const { return m2m::is_conservative(options.kind); }
   /// The pieces of the target exchange values of ghosts.
@@ -130,6 +132,7 @@ struct AnyCoupling::State {
     if (has_directory()) setup.directory = create_group<PointDirectory>();
     // Each coupling has its own collider.
     setup.id = CouplingId{setup.collider.voxels.id().value};
+    turns = std::make_shared<Turns>();
   }
   [[nodiscard]] std::vector<std::byte> target_bytes() const {
     return to_bytes(std::tuple(target, setup.id));
@@ -160,6 +163,9 @@ const collide::Collider& AnyCoupling::collider() const {
   return state_->setup.collider;
 }
 const CouplingSetup& AnyCoupling::setup() const {
+  TESS_CHECK(state_->under_way.n_searches == 0,
+             "the donors of a coupling are used while a search of it is under way: co_await that "
+             "first");
   return state_->setup;
 }
 
@@ -207,8 +213,8 @@ Task AnyCoupling::search(SearchSummary* summary) {
   } else {
     co_await find_donors(found);
   }
-  // Source pieces of conservative kinds have entered their names; otherwise the points of such
-  // target pieces are outside, so that all source pieces were named.
+  // Source pieces of conservative kinds have entered their names; otherwise they were named, since
+  // such target pieces were found.
   if (found.n_alone > 0 && found.least_source)
     co_await epoch([&, source = *found.least_source] {
       state.setup.target.broadcast<&AnyPiece::m2m_attach_if_alone>(state.setup.id, source);
@@ -240,18 +246,20 @@ Task AnyCoupling::collide_covers() {
   co_await collide::run_collision(setup.collider, to_target);
 }
 
-/// Only points that are in no tetrahedron need to know all source pieces.
+/// Only points that are in no tetrahedron need to know all source pieces, and pieces without sources
+/// one of them.
 Task AnyCoupling::find_donors(LedgerPage& found) {
   const CouplingSetup& setup = state_->setup;
   co_await epoch([&] { setup.target.broadcast<&AnyPiece::m2m_ask>(setup.id); });
   co_await close_page(setup.ledger, &found);
-  if (found.n_waiting == 0) co_return;
+  if (found.n_waiting == 0 && found.n_alone == 0) co_return;
   co_await epoch([&] { setup.source.broadcast<&AnyPiece::m2m_name_source>(setup.id); });
   LedgerPage page;
   co_await close_page(setup.ledger, &page);
   std::sort(page.sources.begin(), page.sources.end(),
             [](const SourcePiece& a, const SourcePiece& b) { return a.owner < b.owner; });
   if (!page.sources.empty()) found.least_source = page.sources.front().owner;
+  if (found.n_waiting == 0) co_return;
   co_await epoch(
       [&] { setup.target.broadcast<&AnyPiece::m2m_ask_nearest>(setup.id, page.sources); });
   co_await close_page(setup.ledger, &page);
@@ -280,12 +288,15 @@ Task AnyCoupling::apply(detail::Giver give, detail::Taker take) {
              "co_await search() first");
   TESS_CHECK(state.under_way.n_searches == 0,
              "a coupling is applied while a search of it is under way: co_await that first");
-  state.require_usable("applied");
   const Counted counted(state.under_way.n_applications);
+  const std::shared_ptr<Turns> turns = state.turns;
+  co_await turns->take(take->channel);
+  state.require_usable("applied");
   co_await epoch([&, id = setup.id] {
     setup.source.broadcast<&AnyPiece::m2m_give_values>(id, give, take);
     setup.target.broadcast<&AnyPiece::m2m_take_if_alone>(id, take);
   });
+  turns->pass_on(take->channel);
 }
 
 }  // namespace tess::m2m

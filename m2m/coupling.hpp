@@ -110,7 +110,8 @@ class AnyCoupling {
   [[nodiscard]] CouplingId id() const;
   /// Finds the pieces that are near (collide/collider.hpp). Valid after the first search.
   [[nodiscard]] const collide::Collider& collider() const;
-  /// For what is built on couplings, such as coupling_weights.hpp. Valid after the first search.
+  /// For what uses the donors, such as coupling_weights.hpp. After the first search, while no other
+  /// one is under way.
   [[nodiscard]] const CouplingSetup& setup() const;
 
   /// Finds the donors. The pieces and their coordinates stay as they are until it is done, and no
@@ -151,6 +152,8 @@ class Coupling : public AnyCoupling {
 
   /// Gives the field that Give shows to the memory that Take shows, for example
   /// apply<&Fluid::temperature, &Solid::heat>(). When the task is done, all target pieces have it.
+  /// Applications to the same Take run one after the other, in the order of the calls. What
+  /// received() causes must not await another one to the same Take: both would wait for ever.
   ///   Give: std::span<const double> S::f() const, n_points × n_components, ghosts included; if
   ///     source_values are cells, a row per tetrahedron, or four if they are corners
   ///   Take: std::span<double> T::g(), n_owned × n_components; points without a donor keep theirs;

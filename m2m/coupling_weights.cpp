@@ -54,7 +54,7 @@ WeightMatrix matrix_of(const GlobalRows& rows, std::int64_t n_sources, std::int6
   return matrix;
 }
 
-Task collect_weights(AnyCoupling coupling, std::int64_t n_sources, std::int64_t n_targets,
+Task collect_weights(const AnyCoupling& coupling, std::int64_t n_sources, std::int64_t n_targets,
                      WeightMatrix* out) {
   const CouplingSetup setup = coupling.setup();
   TESS_CHECK(

@@ -17,7 +17,8 @@ struct MeshView {
       point_ids{};                      ///< per point; unique in the mesh; ties are decided by them
   std::span<const GlobalId> tet_ids{};  ///< per tetrahedron; unique in the mesh
   /// The first n_owned points receive values. Those that are corners of tetrahedra here are
-  /// vertices that a point outside may be nearest to.
+  /// vertices that a point outside may be nearest to: policy Nearest and kind nearest need it in a
+  /// source, too.
   std::int64_t n_owned = 0;
   /// The first tetrahedra are the part's own. The others are a halo, for recovered gradients: they
   /// are also in other parts. -1: all are its own.

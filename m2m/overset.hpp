@@ -13,9 +13,9 @@
 //
 //     void cut(const tess::m2m::Wall& wall) { blanking_.cut(mesh_view(), {&wall, 1}, on_outer_); }
 //     std::span<const double> flags() const { return blanking_.flags(); }
-//     std::span<double> offered() { return blanking_.offered(); }
+//     std::span<double> offered(CouplingId from) { return blanking_.offered(from); }
 //     void settle(CouplingId from, std::int32_t mesh_number) {
-//       blanking_.settle(mesh_view(), status(from), mesh_number);
+//       blanking_.settle(mesh_view(), from, status(from), mesh_number);
 //     }
 //     // …
 //     co_await tess::epoch([&] {
@@ -30,9 +30,10 @@
 //       overset.broadcast<&Grid::settle>(to_overset.id(), 1);
 //     });
 //
-// After that, apply() takes fields; a piece uses them where iblank() is negative. If a mesh moves:
-// cut, search and settle again. Send a large wall in parts (Wall::seen_from()). A body that
-// contains no point of another mesh cuts no hole.
+// After that, apply() takes fields; a piece uses those of mesh k where iblank() is -k. With three or
+// more meshes several couplings give a piece values, each to memory of its own: like offered(), the
+// accessor takes the CouplingId. If a mesh moves: cut, search and settle again. Send a large wall in
+// parts (Wall::seen_from()). A body that contains no point of another mesh cuts no hole.
 //
 // Roles, donors and qualities depend only on the meshes and the walls: not on the number of PEs or
 // pieces, or the order of messages.

@@ -48,8 +48,11 @@
 #pragma once
 
 #include "m2m/coupling.hpp"
+#include "m2m/parallel/turns.hpp"
 #include "m2m/workers/scatter.hpp"
 #include "m2m/workers/worker.hpp"
+
+#include <memory>
 
 namespace tess::m2m {
 
@@ -64,7 +67,8 @@ class Transfer {
 
   /// Finds the donors. `summary` may be null.
   Task search(SearchSummary* summary = nullptr) { return coupling_.search(summary); }
-  /// Moves all fields. When the task is done, every target vertex has its value.
+  /// Moves all fields. When the task is done, every target vertex has its value. Applications of
+  /// one Transfer run one after the other, in the order of the calls.
   Task apply();
   /// Frees what the Workers hold of it. The enclosing epoch includes this.
   void destroy() { coupling_.destroy(); }
@@ -73,6 +77,7 @@ class Transfer {
  private:
   Coupling<Worker, Worker> coupling_;
   ArrayProxy<Worker> target_;
+  std::shared_ptr<Turns> turns_ = std::make_shared<Turns>();
 };
 
 /// Times and counts of one transfer. Times are wall-clock seconds on the calling PE.

@@ -39,7 +39,7 @@ class Grid : public tess::Chare<Grid, tess::Index1>, public tess::m2m::Piece<Gri
   void cut();
   /// Decides which fringe points have donors in the mesh with this number.
   void settle(tess::m2m::CouplingId from, std::int32_t mesh_number) {
-    blanking_.settle(mesh_view(), status(from), mesh_number);
+    blanking_.settle(mesh_view(), from, status(from), mesh_number);
   }
   /// Writes the values that have arrived from the mesh to the fringe.
   void use(std::int32_t mesh_number);
@@ -51,7 +51,9 @@ class Grid : public tess::Chare<Grid, tess::Index1>, public tess::m2m::Piece<Gri
   // What couplings call.
   [[nodiscard]] tess::m2m::MeshView mesh_view() const { return tess::m2m::view_of(load_.part); }
   [[nodiscard]] std::span<const double> flags() const { return blanking_.flags(); }
-  [[nodiscard]] std::span<double> offered() { return blanking_.offered(); }
+  [[nodiscard]] std::span<double> offered(tess::m2m::CouplingId from) {
+    return blanking_.offered(from);
+  }
   [[nodiscard]] std::span<const double> values() const { return load_.values; }
   [[nodiscard]] std::span<double> taken() { return taken_; }
 

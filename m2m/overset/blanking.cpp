@@ -46,7 +46,7 @@ void Blanking::cut(const MeshView& mesh, std::span<const Wall> walls,
     flags_.push_back(role == Role::field ? 1 : 0);
   }
   const auto n_owned = static_cast<std::size_t>(mesh.n_owned);
-  offered_.assign(2 * n_owned, 0);
+  offered_.clear();
   reasons_.assign(n_owned, Orphan::Reason::outside);
   iblank_.clear();
   quality_.clear();
@@ -57,19 +57,31 @@ void Blanking::cut(const MeshView& mesh, std::span<const Wall> walls,
   }
 }
 
-void Blanking::settle(const MeshView& mesh, std::span<const Status> status,
+std::span<double> Blanking::offered(CouplingId from) {
+  std::vector<double>& offered = offered_[from];
+  offered.resize(2 * iblank_.size());
+  return offered;
+}
+
+void Blanking::settle(const MeshView& mesh, CouplingId from, std::span<const Status> status,
                       std::int32_t mesh_number) {
   TESS_CHECK(mesh_number > 0, "the number of a mesh is at least 1, got ", mesh_number);
   TESS_CHECK(status.size() == iblank_.size() && status.size() == std::size_t(mesh.n_owned),
              "got the status of ", status.size(), " points of a piece that owns ", mesh.n_owned,
              ", and cut() has given roles to ", iblank_.size(),
              ": call cut() before settle(), and again after the piece has changed");
+  // There is none if no point has a donor.
+  const auto taken = offered_.extract(from);
   for (std::size_t v = 0; v < status.size(); ++v) {
     if (roles_[v] != Role::fringe || status[v] == Status::outside) continue;
-    const double quality = quality_of(offered_[2 * v + 1]);
+    TESS_CHECK(!taken.empty(), "the flags of mesh ", mesh_number,
+               " were not taken since cut() and the last settle() of this coupling: apply() it to "
+               "offered() before each settle()");
+    const std::vector<double>& offered = taken.mapped();
+    const double quality = quality_of(offered[2 * v + 1]);
     const bool is_orphan = iblank_[v] == orphan;
     // Corners with the weight 0 give nothing: they may be holes.
-    if (offered_[2 * v] != 0) {
+    if (offered[2 * v] != 0) {
       if (is_orphan) reasons_[v] = std::max(reasons_[v], Orphan::Reason::hole);
     } else if (quality < options_.least_quality) {
       if (is_orphan) reasons_[v] = Orphan::Reason::least_quality;

@@ -1,13 +1,15 @@
 // What a piece of an overset mesh knows of its points: their roles, and the donors of its fringe.
 // A member of the application's chare. It knows no message: a coupling takes flags() from the
-// pieces of one mesh to offered() of another, as it takes fields.
+// pieces of one mesh to offered() of another, as it takes fields. Each coupling has its own.
 #pragma once
 
+#include "m2m/coupling_id.hpp"
 #include "m2m/overset/roles.hpp"
 #include "m2m/status.hpp"
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <span>
 #include <vector>
 
@@ -58,13 +60,15 @@ class Blanking {
   [[nodiscard]] std::span<const Role> roles() const { return roles_; }
   /// What a coupling gives: n_points × 2, (1 at a hole, 1 at a field point).
   [[nodiscard]] std::span<const double> flags() const { return flags_; }
-  /// What it takes: n_owned × 2, the same interpolated.
-  [[nodiscard]] std::span<double> offered() { return offered_; }
+  /// What it takes: n_owned × 2, the same interpolated. Kept until settle().
+  [[nodiscard]] std::span<double> offered(CouplingId from);
 
-  /// Call it after a coupling has taken the flags of the mesh with number `mesh_number` (1 or
-  /// more). `status`: of that coupling, per point owned. Fringe points take the donor of the best
-  /// quality; of equal ones that of the lower mesh. So couplings may come in any order.
-  void settle(const MeshView& mesh, std::span<const Status> status, std::int32_t mesh_number);
+  /// Call it after the coupling `from` has taken the flags of the mesh with number `mesh_number` (1
+  /// or more), each time once. `status`: of that coupling, per point owned. Fringe points take the
+  /// donor of the best quality; of equal ones that of the lower mesh. So couplings may come in any
+  /// order.
+  void settle(const MeshView& mesh, CouplingId from, std::span<const Status> status,
+              std::int32_t mesh_number);
 
   /// Per point owned: hole, field, orphan, or minus the number of the donor's mesh.
   [[nodiscard]] std::span<const std::int32_t> iblank() const { return iblank_; }
@@ -81,12 +85,12 @@ class Blanking {
 
  private:
   BlankingOptions options_;
-  std::vector<Role> roles_;              // per point
-  std::vector<double> flags_;            // per point × 2
-  std::vector<double> offered_;          // per point owned × 2
-  std::vector<std::int32_t> iblank_;     // per point owned
-  std::vector<double> quality_;          // per point owned
-  std::vector<Orphan::Reason> reasons_;  // per point owned; of orphans
+  std::vector<Role> roles_;                            // per point
+  std::vector<double> flags_;                          // per point × 2
+  std::vector<std::int32_t> iblank_;                   // per point owned
+  std::vector<double> quality_;                        // per point owned
+  std::vector<Orphan::Reason> reasons_;                // per point owned; of orphans
+  std::map<CouplingId, std::vector<double>> offered_;  // per point owned × 2
 };
 
 }  // namespace tess::m2m

@@ -53,7 +53,8 @@ void AnyPiece::m2m_receive_donors(const DonorAnswer& answer) {
 void AnyPiece::m2m_name_source(CouplingId id) {
   const MeshView mesh = m2m_view();
   m2m_sides().source(id).setup.ledger.local().add(SourcePiece{
-      m2m_owner(), box_of_nearest(mesh), static_cast<std::uint8_t>(mesh.tets.empty() ? 0 : 1)});
+      m2m_owner(), box_of_nearest(mesh), static_cast<std::uint8_t>(mesh.points.empty() ? 0 : 1),
+      static_cast<std::uint8_t>(mesh.tets.empty() ? 0 : 1)});
 }
 void AnyPiece::m2m_ask_nearest(CouplingId id, const std::vector<SourcePiece>& sources) {
   TargetSide& to = m2m_sides().target(id);
@@ -157,7 +158,11 @@ void AnyPiece::m2m_give_rows(CouplingId id, GroupProxy<RowBook> book) {
 }
 void AnyPiece::m2m_take_rows(GivenRows given) {
   const MeshView mesh = m2m_view();
-  for (const std::int32_t row : m2m_sides().target(given.coupling).rows_from(given.from))
+  const TargetSide& to = m2m_sides().target(given.coupling);
+  TESS_CHECK(mesh.n_owned == std::ssize(to.status()), "a piece owns ", mesh.n_owned,
+             " points, and owned ", to.status().size(),
+             " in the last search of the coupling: search again when points change");
+  for (const std::int32_t row : to.rows_from(given.from))
     given.rows.targets.push_back(mesh.point_ids[static_cast<std::size_t>(row)]);
   given.book.local().add(given.rows);
 }

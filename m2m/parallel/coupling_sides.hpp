@@ -12,9 +12,10 @@
 
 namespace tess::m2m {
 
-/// True if a target piece has places for values, but no source piece gives it any.
+/// True if no source piece gives a target piece values. That may be because it has no places for
+/// them: it is told of rounds, too.
 [[nodiscard]] bool is_alone(const auto& target_side) {
-  return target_side.n_sources() == 0 && !target_side.status().empty();
+  return target_side.n_sources() == 0;
 }
 
 struct CouplingSides {

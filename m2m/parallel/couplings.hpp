@@ -1,13 +1,11 @@
 // The couplings of a piece, as the piece keeps them.
 #pragma once
 
-#include <cstdint>
+#include "m2m/coupling_id.hpp"
+
 #include <memory>
 
 namespace tess::m2m {
-
-/// A coupling; unique within the run.
-enum class CouplingId : std::uint64_t {};
 
 struct CouplingSides;
 

@@ -15,12 +15,12 @@
 
 namespace tess::m2m {
 
-/// A source piece, whether it has tetrahedra, and the box around the points that it owns: with
-/// tetrahedra those that they use, since no other point is the nearest.
+/// A source piece, whether it has points and tetrahedra, and the box around the points that it
+/// owns: with tetrahedra those that they use, since no other point is the nearest.
 struct SourcePiece {
   collide::OwnerId owner{};
   Aabb box{};
-  std::uint8_t has_tets = 0;
+  std::uint8_t has_points = 0, has_tets = 0;
 };
 
 struct LedgerPage {
@@ -28,7 +28,7 @@ struct LedgerPage {
   WorstPlaces worst;
   std::uint64_t n_waiting = 0;  ///< target pieces with points that need the nearest vertex
   std::vector<SourcePiece> sources;
-  std::uint64_t n_alone = 0;                     ///< target pieces without sources
+  std::uint64_t n_alone = 0;  ///< target pieces that no source piece gives values
   std::optional<collide::OwnerId> least_source;  ///< of all source pieces
 
   LedgerPage& operator+=(const LedgerPage& other) {

@@ -32,14 +32,16 @@ consteval bool check_piece() {
 
 /// A second base class of a chare that holds a piece of a mesh. The chare has a member function
 /// `MeshView mesh_view() const`; if it migrates, it serialises `couplings`. If it has a member
-/// function `received(CouplingId)`, that is called after new values were written.
+/// function `received(CouplingId)`, that is called after new values were written: once per round,
+/// also if the piece has no point or no point got a value.
 template <class C>
 class Piece : public AnyPiece {
  public:
   /// Gives the values that Give shows to the pieces of the coupling's target, which are of class
   /// T: Take of each shows the memory that they go to. The k-th call of every source piece belongs
   /// to the k-th round; a target piece gets a round when it is complete, and one with points that
-  /// no source piece reaches gets the values of the policy. Give may be const.
+  /// no source piece reaches gets the values of the policy. Give may be const. An apply() of the
+  /// coupling to the same Take is a round, too: call it when no other round is under way.
   template <class T, auto Give, auto Take>
   void m2m_give(CouplingId id) {
     m2m_give_round(id, detail::Giver(detail::GiverOf<C, Give>::kind),

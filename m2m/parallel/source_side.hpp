@@ -58,6 +58,7 @@ class SourceSide {
   /// are over the points of the piece, in the order of the values of give().
   template <class Send>
   void give_rows(const MeshView& mesh, const Send& send) {
+    rows_of_search_.check(n_unknowns(mesh, setup.source_values));
     prepare(mesh);
     for (const auto& [target, donors] : donors_) send(target, rows_of(mesh, donors));
   }

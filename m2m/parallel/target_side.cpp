@@ -1,6 +1,7 @@
 #include "m2m/parallel/target_side.hpp"
 
 #include "runtime/core/check.hpp"
+#include "runtime/core/error.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -101,6 +102,8 @@ void TargetSide::name_sources(const MeshView& mesh, std::span<const SourcePiece>
     boxes.push_back(counts ? source.box : collide::no_box<double, 3>());
     sources_.push_back(source.owner);
   }
+  source_has_points_ = std::any_of(sources.begin(), sources.end(),
+                                   [](const SourcePiece& s) { return s.has_points != 0; });
   Aabb around = collide::no_box<double, 3>();
   for (const NearestSoFar& point : nearest_)
     around = merged(around, collide::box_of(mesh.points[static_cast<std::size_t>(point.row)]));
@@ -164,7 +167,14 @@ TargetSide::Addressed<Choice> TargetSide::choices(const MeshView& mesh) {
     const auto row = static_cast<std::size_t>(nearest.row);
     const bool is_outside = status_[row] == Status::outside;
     if (is_outside) distance_[row] = std::sqrt(nearest.squared_distance);
-    if (nearest.vertex < 0 || (is_outside && !takes_outside)) continue;
+    if (is_outside && !takes_outside) continue;
+    if (nearest.vertex < 0) {
+      if (!source_has_points_) continue;
+      fail(
+          ErrorCode::bad_mesh,
+          "no source piece owns a point that is a corner of its tetrahedra, so that no point has a "
+          "nearest vertex: set MeshView::n_owned in the source, too");
+    }
     all[nearest.source].vertices.push_back(nearest.vertex);
     rows_[nearest.source].push_back(nearest.row);
   }

@@ -64,8 +64,8 @@ class TargetSide {
 
   template <class Ar>
   void serialize(Ar& ar) {
-    ar(setup, cover_, asked_, best_, nearest_, to_ask_, nearest_parts_, sources_, n_open_, tally_,
-       worst_, status_, distance_, rows_, channels_);
+    ar(setup, cover_, asked_, best_, nearest_, to_ask_, nearest_parts_, sources_,
+       source_has_points_, n_open_, tally_, worst_, status_, distance_, rows_, channels_);
   }
 
  private:
@@ -100,6 +100,7 @@ class TargetSide {
   std::vector<std::uint32_t> to_ask_;  // those of them that may have a nearer one in another piece
   NearestParts nearest_parts_;
   std::vector<collide::OwnerId> sources_;  // of the parts in nearest_parts_
+  bool source_has_points_ = false;         // any of these pieces has
   std::uint64_t n_open_ = 0;
   Tally tally_;
   WorstPlaces worst_;

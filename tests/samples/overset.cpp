@@ -25,9 +25,9 @@ class Grid : public tess::Chare<Grid, tess::Index1>, public tess::m2m::Piece<Gri
   tess::m2m::MeshView mesh_view() const { return view_of(part_); }
   void cut(const tess::m2m::Wall& wall) { blanking_.cut(mesh_view(), {&wall, 1}, on_outer_); }
   std::span<const double> flags() const { return blanking_.flags(); }
-  std::span<double> offered() { return blanking_.offered(); }
+  std::span<double> offered(CouplingId from) { return blanking_.offered(from); }
   void settle(CouplingId from, std::int32_t mesh_number) {
-    blanking_.settle(mesh_view(), status(from), mesh_number);
+    blanking_.settle(mesh_view(), from, status(from), mesh_number);
   }
   // …
   void load(MeshPart part, const std::vector<std::uint8_t>& on_outer) {

@@ -43,12 +43,24 @@ struct Fixture {
   }
   void offer(Blanking& blanking, std::int32_t number, Status status, double hole,
              double field) const {
+    take(blanking, number, hole, field);
+    settle(blanking, number, status);
+  }
+  /// What apply() writes.
+  void take(Blanking& blanking, std::int32_t number, double hole, double field) const {
+    const std::span<double> offered = blanking.offered(coupling_from(number));
     for (std::size_t v = 0; v < point_ids.size(); ++v) {
-      blanking.offered()[2 * v] = hole;
-      blanking.offered()[2 * v + 1] = field;
+      offered[2 * v] = hole;
+      offered[2 * v + 1] = field;
     }
+  }
+  void settle(Blanking& blanking, std::int32_t number, Status status) const {
     const std::vector<Status> all(point_ids.size(), status);
-    blanking.settle(view(), all, number);
+    blanking.settle(view(), coupling_from(number), all, number);
+  }
+  /// A coupling from each mesh.
+  static CouplingId coupling_from(std::int32_t number) {
+    return CouplingId{static_cast<std::uint64_t>(100 - number)};
   }
 };
 
@@ -113,6 +125,21 @@ TEST_CASE("a fringe point takes the donor of the best quality, whatever the orde
     }
   } while (std::next_permutation(order.begin(), order.end()));
   SUCCEED();
+}
+
+TEST_CASE("flags of several meshes that are taken before any is settled keep apart",
+          "[m2m][overset]") {
+  const Fixture fixture;
+  for (const bool ascending : {true, false}) {
+    Blanking blanking = fixture.cut({1});
+    fixture.take(blanking, 2, 0, 1);    // a good donor
+    fixture.take(blanking, 3, 0.5, 0);  // with a corner in a hole
+    blanking = from_bytes<Blanking>(to_bytes(blanking));
+    for (const std::int32_t number : {ascending ? 2 : 3, ascending ? 3 : 2})
+      fixture.settle(blanking, number, Status::inside);
+    for (std::size_t v = 0; v < fixture.mesh.n_points(); ++v)
+      if (blanking.roles()[v] == Role::fringe) REQUIRE(blanking.iblank()[v] == -2);
+  }
 }
 
 TEST_CASE("a donor whose weights add up to 1 up to rounding is full, and no other is",

@@ -496,46 +496,50 @@ Task retired() {
   co_await end(codes);
 }
 
-/// Pieces start rounds, and most points of the other code are outside: each round reaches the pieces
-/// that the application of the whole reaches, and with the same bits.
-Task rounds() {
+/// Pieces start rounds, and some pieces of the other code are empty. Most of its points are outside,
+/// or none is. Each round reaches the pieces that the application of the whole reaches, and with the
+/// same bits.
+Task rounds_to(double reach, TransferKind kind) {
   const std::uint64_t n_targets = 12, n_rounds = 3;
   TetMesh left_end = left_mesh;
-  for (Point& p : left_end.points) p[0] *= 0.2;
-  for (const TransferKind kind : {TransferKind::linear, TransferKind::conservative}) {
-    Two codes;
+  for (Point& p : left_end.points) p[0] *= reach;
+  Two codes;
+  co_await epoch([&] {
+    codes.left = pieces<Left>(left_end, 5, 0, 1, 1);
+    codes.right = pieces<Right>(right_mesh, 9, static_cast<std::int32_t>(n_targets), 1, 1);
+  });
+  CouplingOptions options;
+  options.kind = kind;
+  options.policy = UseValue{-7e5};
+  Coupling there(codes.left, codes.right, options);
+  for (int k = 1; k <= 2; ++k) {
+    co_await there.search();
+    co_await step(codes, k);
+    co_await there.apply<&Left::out, &Right::in>();
+    ValueOf whole, by_rounds;
+    co_await values_of(codes.right, &whole);
     co_await epoch([&] {
-      codes.left = pieces<Left>(left_end, 5, 0, 1, 1);
-      codes.right = pieces<Right>(right_mesh, static_cast<std::int32_t>(n_targets), 0, 1, 1);
+      codes.left.broadcast<&Left::hop>(k);
+      codes.right.broadcast<&Right::hop>(k + 1);
+      codes.right.broadcast<&Right::forget>();
     });
-    CouplingOptions options;
-    options.kind = kind;
-    options.policy = UseValue{-7e5};
-    Coupling there(codes.left, codes.right, options);
-    for (int k = 1; k <= 2; ++k) {
-      co_await there.search();
-      co_await step(codes, k);
-      co_await there.apply<&Left::out, &Right::in>();
-      ValueOf whole, by_rounds;
-      co_await values_of(codes.right, &whole);
-      co_await epoch([&] {
-        codes.left.broadcast<&Left::hop>(k);
-        codes.right.broadcast<&Right::hop>(k + 1);
-        codes.right.broadcast<&Right::forget>();
-      });
-      co_await epoch([&] {
-        for (std::uint64_t round = 0; round < n_rounds; ++round)
-          codes.left.broadcast<&Left::start_round>(there.id());
-      });
-      co_await values_of(codes.right, &by_rounds);
-      TESS_CHECK(by_rounds == whole, "rounds of pieces give other values in step ", k);
-      Future<std::uint64_t> n_received;
-      codes.right.broadcast<&Right::count_received>(n_received.callback());
-      const std::uint64_t n = co_await n_received;
-      TESS_CHECK(n == (1 + n_rounds) * n_targets, n, " calls of received() in step ", k);
-    }
-    co_await end(codes);
+    co_await epoch([&] {
+      for (std::uint64_t round = 0; round < n_rounds; ++round)
+        codes.left.broadcast<&Left::start_round>(there.id());
+    });
+    co_await values_of(codes.right, &by_rounds);
+    TESS_CHECK(by_rounds == whole, "rounds of pieces give other values in step ", k);
+    Future<std::uint64_t> n_received;
+    codes.right.broadcast<&Right::count_received>(n_received.callback());
+    const std::uint64_t n = co_await n_received;
+    TESS_CHECK(n == (1 + n_rounds) * n_targets, n, " calls of received() in step ", k);
   }
+  co_await end(codes);
+}
+Task rounds() {
+  for (const double reach : {0.2, 1.0})
+    for (const TransferKind kind : {TransferKind::linear, TransferKind::conservative})
+      co_await rounds_to(reach, kind);
 }
 
 /// Ten thousand applications: the same bits, and flat memory.

@@ -3,6 +3,7 @@
 //
 //     test_coupling_misuse NAME_OF_THE_MISUSE KIND
 #include "m2m/coupling.hpp"
+#include "m2m/coupling_weights.hpp"
 #include "m2m/kuhn.hpp"
 #include "m2m/mesh_parts.hpp"
 
@@ -60,6 +61,19 @@ ArrayProxy<Patch> patches(std::int32_t n_cubes, std::int32_t n) {
   return array;
 }
 
+/// Collects the weights of another mesh than the one that was searched.
+Task collect_too_late(std::string name, ArrayProxy<Patch> source, ArrayProxy<Patch> target,
+                      Coupling<Patch, Patch>& coupling) {
+  WeightMatrix weights;
+  if (name == "weights_meanwhile") {
+    const Task search = coupling.search();
+    co_await collect_weights(coupling, 125, 64, &weights);
+  }
+  const ArrayProxy<Patch> other = name == "weights_shrunk_source" ? source : target;
+  co_await epoch([&] { other.broadcast<&Patch::shrink>(); });
+  co_await collect_weights(coupling, 125, 64, &weights);
+}
+
 Task misuse(std::string name, TransferKind kind) {
   ArrayProxy<Patch> source, target;
   co_await epoch([&] { source = patches(4, 3), target = patches(3, 2); });
@@ -104,6 +118,7 @@ Task misuse(std::string name, TransferKind kind) {
     if (name == "copy_searched") co_await coupling.search();
   }
   if (name == "shrunk") co_await epoch([&] { source.broadcast<&Patch::shrink>(); });
+  if (name.starts_with("weights_")) co_await collect_too_late(name, source, target, coupling);
   if (name == "vanished") co_await epoch([&] { source.broadcast<&Patch::vanish>(); });
   if (name == "forgotten") co_await epoch([&] { source[{1}].send<&Patch::forget>(); });
   if (name == "source_moved" || name == "target_moved") {

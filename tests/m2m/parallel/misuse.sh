@@ -27,6 +27,13 @@ ends target_ended "a coupling is searched after an array of its pieces was destr
 ends copy_destroyed "a coupling is applied that another copy of the handle has destroyed: use the copy that called destroy()"
 ends copy_searched "a coupling is searched that another copy of the handle has destroyed: use the copy that called destroy()"
 ends shrunk "a piece has 4 rows of values, and had [0-9]* in the last search of the coupling: search again when points or tetrahedra change"
+for kind in linear second-order; do
+  exits 1 "a piece has 4 rows of values, and had [0-9]* in the last search of the coupling" "$program" weights_shrunk_source "$kind" --pes 2
+  exits 1 "a piece owns 4 points, and owned [0-9]* in the last search of the coupling: search again when points change" \
+    "$program" weights_shrunk_target "$kind" --pes 2
+  exits 1 "the donors of a coupling are used while a search of it is under way: co_await that first" \
+    "$program" weights_meanwhile "$kind" --pes 2
+done
 ends vanished "a piece has 0 rows of values, and had [0-9]* in the last search"
 exits 1 "two points of a piece have the id 7: point_ids and tet_ids are unique in the mesh" "$program" same_ids conservative --pes 2
 ends forgotten "give as many rows, ghosts included\|give equally many"

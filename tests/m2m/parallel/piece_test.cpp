@@ -114,7 +114,57 @@ Task give_three_rounds(int& n_received, std::int64_t& n_filled, std::uint64_t& n
   n_filled = co_await filled;
 }
 
+/// A pure source that leaves out n_owned.
+class Unowned : public Chare<Unowned, Index1>, public Piece<Unowned> {
+ public:
+  void load(const MeshPart& part) { part_ = part; }
+  [[nodiscard]] MeshView mesh_view() const {
+    return {part_.points, part_.tets, part_.point_ids, part_.tet_ids};
+  }
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(couplings, part_);
+  }
+
+ private:
+  MeshPart part_;
+};
+
+/// From pieces of the box 0 ≤ x < 0.5 that own no point, or from pieces without points.
+Task search_unowned(bool has_points, TransferKind kind, const OutsidePolicy& policy) {
+  ArrayProxy<Unowned> source;
+  ArrayProxy<Counted> target;
+  co_await epoch([&] {
+    source = create<Unowned>(range(2));
+    target = counted(3);
+    TetMesh mesh = kuhn_mesh({3});
+    for (Point& p : mesh.points) p[0] *= 0.5;
+    const auto parts = mesh_parts(mesh, 2, PartitionMethod::curve);
+    for (std::int32_t k = 0; k < 2 && has_points; ++k)
+      source[{k}].send<&Unowned::load>(parts[static_cast<std::size_t>(k)]);
+  });
+  CouplingOptions options;
+  options.kind = kind;
+  options.policy = policy;
+  Coupling coupling(source, target, options);
+  co_await coupling.search();
+}
+
 }  // namespace
+
+TEST_CASE("a source that owns no point is refused where points need the nearest vertex", "[m2m]") {
+  const auto result = [](bool has_points, TransferKind kind, const OutsidePolicy& policy) {
+    const test::Machine machine{.pes = 3, .seed = 5};
+    return machine.run([=]() -> Task { return search_unowned(has_points, kind, policy); });
+  };
+  for (const TransferKind kind : {TransferKind::nearest, TransferKind::linear}) {
+    const test::Result refused = result(true, kind, Nearest{});
+    CHECK(refused.exit_code == 2);
+    CHECK(refused.failure().find("set MeshView::n_owned in the source") != std::string::npos);
+    CHECK(result(false, kind, Nearest{}).ok());  // nothing to own
+  }
+  CHECK(result(true, TransferKind::linear, Keep{}).ok());
+}
 
 TEST_CASE("a round that pieces start reaches those that no source piece gives values", "[m2m]") {
   test::for_seeds(0, test::n_seeds(50), [](std::uint64_t seed) {
