@@ -220,6 +220,8 @@ class Collection : public HostedCollection {
   /// Writes the sections whose root is this PE, and returns their ids.
   std::vector<SectionId> save_sections(Writer& ar) const;
   virtual void restore_sections(Reader& ar) = 0;
+  /// Drops the messages that wait here for absent elements and have lost their purpose.
+  virtual void drop_unwanted() = 0;
   /// After a restart: the section had ended before the checkpoint.
   void section_had_ended(SectionId id);
 

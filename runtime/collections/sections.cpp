@@ -378,6 +378,7 @@ void Sections::free(std::unique_ptr<SectionPart> part, std::vector<Element*>& re
 void Sections::end(SectionId id) {
   ended_.add(CollectionId{id.value});
   last_ = nullptr;
+  collection_.drop_unwanted();  // Join may wait here for an index that has no element
   if (lists_) lists_->end(id);
   auto node = parts_.extract(id.value);
   if (node.empty()) return;
