@@ -24,6 +24,7 @@ void AskBase::await_suspend(Task::Handle task) {
 void AskBase::wait(Waiter& waiter) {
   TESS_CHECK(id_ != 0, "an ask that was cancelled or moved from is awaited");
   TESS_CHECK(waiting_ == nullptr, "two coroutines await one ask");
+  require_here();
   waiting_ = &waiter;
 }
 
@@ -57,7 +58,18 @@ void AskBase::expire() {
   if (Waiter* waiter = done(); waiter != nullptr) waiter->wake();
 }
 
+/// Another thread runs the PE that knows it.
+void AskBase::require_here() const {
+  TESS_CHECK(pe_ == &current_pe(), "an ask of ", pe_->id(), " is used on ", current_pe().id(),
+             ": its element has migrated before the reply was there; make it a local variable of "
+             "the coroutine that awaits it");
+}
+
 void AskBase::leave() {
+  if (id_ == 0 && timer_ == 0) return;
+  const Pe* const here = current_pe_or_null();
+  if (here != pe_ && (here == nullptr || here->stopped())) return;  // the run is over
+  require_here();
   if (id_ != 0) pe_->leave_future(std::exchange(id_, 0));
   if (timer_ != 0) pe_->timers().cancel(std::exchange(timer_, 0));
 }

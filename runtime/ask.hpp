@@ -96,6 +96,7 @@ class AskBase {
   std::optional<Failure> failure_;
 
  private:
+  void require_here() const;
   void leave();
   void expire();
 

@@ -54,10 +54,16 @@ class ElementProxy {
   /// Calls member function F of the element and returns what `co_await` waits for: the value that F
   /// returns, or the end of its coroutine. The call is sent at once. A tess::Error that F throws is
   /// thrown in the asker, and so is one if the element was destroyed. If there is no element yet,
-  /// the call waits at the home of the index.
+  /// the call waits at the home of the index. The entry method's attributes may change this and
+  /// give the call a priority (EntryAttributes).
   template <auto F, class... Args>
   [[nodiscard]] Ask<C, F> ask(Args&&... args) const {
-    return ask_from<F>(detail::ReplyPlace(), std::forward<Args>(args)...);
+    constexpr std::int64_t priority = detail::entry_rule<C, F>.priority;
+    if constexpr (priority == 0) {
+      return ask_from<F>(detail::ReplyPlace(), std::forward<Args>(args)...);
+    } else {
+      return ask_from<F>(detail::PrioritisedPlace{{}, priority}, std::forward<Args>(args)...);
+    }
   }
   /// Sends a message. If there is no element, it is created on this PE; of several PEs that demand
   /// it at once exactly one creates it.
@@ -147,8 +153,14 @@ class ElementProxy {
     Pe& pe = current_pe();
     Ask<C, F> reply(collection_, index_);
     static_cast<detail::ReplyPlace&>(place) = reply.place();
-    post_message(pe, detail::AskCall<C, Place, F>::make(pe, collection_, index_, place,
-                                                        std::forward<Args>(args)...));
+    auto* message = detail::AskCall<C, Place, F>::make(pe, collection_, index_, place,
+                                                       std::forward<Args>(args)...);
+    if constexpr (detail::entry_rule<C, F>.creates != detail::Creates::no) {
+      static_assert(check_on_demand());
+      message->demand = demand_of<F>;
+      message->ask = message->demand == detail::Demand::here;
+    }
+    post_message(pe, message);
     return reply;
   }
 
@@ -168,16 +180,23 @@ class ElementProxy {
     if constexpr (creates == detail::Creates::no) {
       post<F>(of, detail::Demand::none, std::forward<Args>(args)...);
     } else {
-      send_on_demand<F>(
-          of, creates == detail::Creates::here ? detail::Demand::here : detail::Demand::home,
-          std::forward<Args>(args)...);
+      send_on_demand<F>(of, demand_of<F>, std::forward<Args>(args)...);
     }
   }
-  template <auto F, class Of, class... Args>
-  void send_on_demand(Of of, detail::Demand demand, Args&&... args) const {
+  /// For an entry method that creates its element.
+  template <auto F>
+  static constexpr detail::Demand demand_of =
+      detail::entry_rule<C, F>.creates == detail::Creates::here ? detail::Demand::here
+                                                                : detail::Demand::home;
+  static consteval bool check_on_demand() {
     static_assert(!detail::OnePerPe<C>, "a group has all its members: none is created on demand");
     static_assert(std::is_default_constructible_v<C>,
                   "a chare that is created on demand needs a default constructor");
+    return true;
+  }
+  template <auto F, class Of, class... Args>
+  void send_on_demand(Of of, detail::Demand demand, Args&&... args) const {
+    static_assert(check_on_demand());
     post<F>(of, demand, std::forward<Args>(args)...);
   }
   template <auto F, class Of, class... Args>

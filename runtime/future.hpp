@@ -4,14 +4,17 @@
 //     blocks.broadcast<&Block::add>(total.callback());  // each calls contribute(tess::sum, x, target)
 //     const double t = co_await total;
 //
-// The callback can be sent anywhere; the result arrives at the PE that made the future. It is taken
-// once (a second co_await ends the job), and the future must outlive it: make it a local variable
-// of the coroutine that awaits it, or a member of an element that does not migrate meanwhile. A
-// Future<void> gets no value.
+// The callback can be sent anywhere; the result arrives at the PE on which callback() was called
+// first. It is taken once (a second co_await ends the job), and the future must outlive it: make it
+// a local variable of the coroutine that awaits it, or a member of an element that does not migrate
+// between callback() and the end of co_await (a check ends the job otherwise). A Future<void> gets
+// no value.
 //
 // The same in one line, where the callback is the last argument of a broadcast:
 //
 //     const double t = co_await blocks.reduce<&Block::add>();
+//
+// The future is in its PE's table, by number, from its first use until its result is taken.
 #pragma once
 
 #include "runtime/callback.hpp"
@@ -32,7 +35,7 @@ class Future {
   using Value = std::conditional_t<std::is_void_v<T>, NoValue, T>;
 
  public:
-  Future() : pe_(&current_pe()), id_(pe_->enter_future(this)) {
+  Future() {
     static_assert(std::is_default_constructible_v<Value>,
                   "the value of a future needs a default constructor: where it arrives it is made "
                   "empty and then read");
@@ -40,21 +43,20 @@ class Future {
   Future(const Future&) = delete;
   Future& operator=(const Future&) = delete;
   /// Not while a coroutine waits for it, and on its own PE only. The other can only be assigned to.
-  Future(Future&& other) noexcept : pe_(other.pe_) { take(other); }
+  Future(Future&& other) noexcept { take(other); }
   Future& operator=(Future&& other) noexcept {
     if (this == &other) return *this;
     TESS_CHECK(waiting_ == nullptr, "a future is overwritten while a coroutine waits for it");
-    if (id_ != 0) pe_->leave_future(id_);
+    leave();
     take(other);
     return *this;
   }
-  ~Future() {
-    if (id_ != 0) pe_->leave_future(id_);
-  }
+  ~Future() { leave(); }
 
   /// The target that receives the result.
   [[nodiscard]] Callback<T> callback() const {
-    TESS_CHECK(id_ != 0, "a future that was moved from has no callback: use the one it moved to");
+    TESS_CHECK(!moved_, "a future that was moved from has no callback: use the one it moved to");
+    enter();
     return detail::make_target<Value>(kind_, to_bytes(std::tuple(pe_->id(), id_)));
   }
 
@@ -76,6 +78,7 @@ class Future {
   }
   T await_resume() {
     waiting_ = nullptr;
+    leave();
     if constexpr (!std::is_void_v<T>) {
       TESS_CHECK(!std::exchange(taken_, true), waits_for(),
                  " is awaited again: the first co_await took its result, so keep that");
@@ -85,8 +88,9 @@ class Future {
 
   // For when_all and when_any.
   void wait(detail::Waiter& waiter) {
-    TESS_CHECK(id_ != 0, "a future that was moved from is awaited: await the one it moved to");
+    TESS_CHECK(!moved_, "a future that was moved from is awaited: await the one it moved to");
     TESS_CHECK(waiting_ == nullptr, "two coroutines await one future");
+    enter();
     waiting_ = &waiter;
   }
   void withdraw() { waiting_ = nullptr; }
@@ -123,10 +127,32 @@ class Future {
   static inline const typename Callback<Value>::Kind kind_{naming::name_of<&Future::give>(),
                                                            &Future::give, &Future::describe};
 
+  /// From here on a result finds it, on this PE.
+  void enter() const {
+    if (id_ == 0) {
+      pe_ = &current_pe();
+      id_ = pe_->enter_future(const_cast<Future*>(this));
+    }
+    require_here();
+  }
+  /// Another thread runs the PE that knows it.
+  void require_here() const {
+    TESS_CHECK(pe_ == &current_pe(), "a future of ", pe_->id(), " is used on ", current_pe().id(),
+               ": its element has migrated before its result was taken; make it a local variable "
+               "of the coroutine that awaits it, or migrate after that");
+  }
+  void leave() {
+    if (id_ == 0) return;
+    const Pe* const here = detail::current_pe_or_null();
+    if (here != pe_ && (here == nullptr || here->stopped())) return;  // the run is over
+    require_here();
+    pe_->leave_future(std::exchange(id_, 0));
+  }
   void take(Future& other) {
     TESS_CHECK(other.waiting_ == nullptr, "a future is moved while a coroutine waits for it");
-    TESS_CHECK(&current_pe() == other.pe_, "a future of ", other.pe_->id(), " is moved on ",
-               current_pe().id(), ": send its callback() instead");
+    TESS_CHECK(other.id_ == 0 || &current_pe() == other.pe_, "a future of ", other.pe_->id(),
+               " is moved on ", current_pe().id(), ": send its callback() instead");
+    moved_ = std::exchange(other.moved_, true);
     pe_ = other.pe_;
     id_ = std::exchange(other.id_, 0);
     value_ = std::exchange(other.value_, std::nullopt);
@@ -134,8 +160,9 @@ class Future {
     if (id_ != 0) pe_->move_future(id_, this);
   }
 
-  Pe* pe_;
-  std::uint64_t id_ = 0;  // 0: moved from
+  mutable Pe* pe_ = nullptr;      // that knows it
+  mutable std::uint64_t id_ = 0;  // its number there; 0: no PE knows it
+  bool moved_ = false;            // to another future
   std::optional<Value> value_;
   bool taken_ = false;  // a co_await has moved the value out
   detail::Waiter own_;

@@ -55,9 +55,14 @@ class Mailbox {
     return false;
   }
   void put_back(Value value) {
-    if (give(value)) return;
     const Key key = value.*KeyMember;
     kept_.emplace_hint(kept_.lower_bound(key), key, std::move(value));
+  }
+  /// Gives kept messages of this key, the oldest first, to coroutines that wait for it.
+  void give_kept(const Key& key) {
+    auto at = kept_.lower_bound(key);
+    while (at != kept_.end() && !kept_.key_comp()(key, at->first) && give(at->second))
+      at = kept_.erase(at);
   }
 
  public:
@@ -83,12 +88,14 @@ class Mailbox {
       waiting_ = &waiter;
       box_.waiting_.push_back(this);
     }
-    /// A message that this has taken is again the oldest of its key.
+    /// A message that this has taken is again the oldest of its key. pass_on() follows, once all
+    /// that are withdrawn together are.
     void withdraw() {
       if (waiting_ != nullptr) std::erase(box_.waiting_, this);
       waiting_ = nullptr;
       if (value_) box_.put_back(*std::exchange(value_, std::nullopt));
     }
+    void pass_on() { box_.give_kept(key_); }
     [[nodiscard]] std::string waits_for() const {
       return text("a message of key ", key_, " (", name_of_type<Value>, ")");
     }

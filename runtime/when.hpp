@@ -171,6 +171,12 @@ class Parts {
   void each(const Do& run) {
     std::apply([&run](auto&... part) { (run(part), ...); }, parts_);
   }
+  template <class Do>
+  void each_backwards(const Do& run) {
+    [&]<std::size_t... I>(std::index_sequence<I...>) {
+      (run(std::get<sizeof...(A) - 1 - I>(parts_)), ...);
+    }(std::index_sequence_for<A...>());
+  }
   All all() {
     return std::apply([](auto&... part) { return All{result_of(part)...}; }, parts_);
   }
@@ -204,6 +210,10 @@ class PartsOfVector {
   void each(const Do& run) {
     for (A& part : parts_) run(part);
   }
+  template <class Do>
+  void each_backwards(const Do& run) {
+    for (std::size_t n = parts_.size(); n > 0; --n) run(parts_[n - 1]);
+  }
   All all() {
     All results;
     for (A& part : parts_) results.push_back(result_of(part));
@@ -214,6 +224,19 @@ class PartsOfVector {
  private:
   std::vector<A> parts_;
 };
+
+/// Withdraws the parts that are `unused`, the last one first: what each has taken of a mailbox is
+/// again the oldest message of its key. Only then are these messages given to others that wait.
+template <class P, class Unused>
+void withdraw(P& parts, const Unused& unused) {
+  parts.each_backwards([&unused](auto& part) {
+    if (unused(part)) part.withdraw();
+  });
+  parts.each([&unused](auto& part) {
+    if constexpr (requires { part.pass_on(); })
+      if (unused(part)) part.pass_on();
+  });
+}
 
 template <class P>
 class [[nodiscard]] WhenAll {
@@ -249,9 +272,7 @@ class [[nodiscard]] WhenAll {
     bool failed = false;
     parts_.each([&failed](const auto& part) { failed = failed || has_failed(part); });
     if (failed) {
-      parts_.each([](auto& part) {
-        if (!has_failed(part)) part.withdraw();
-      });
+      withdraw(parts_, [](const auto& part) { return !has_failed(part); });
       parts_.each([](auto& part) {
         if (has_failed(part)) (void)part.await_resume();  // throws
       });
@@ -290,11 +311,14 @@ class [[nodiscard]] WhenAny {
   }
   typename P::First await_resume() {
     const std::size_t which = find();
-    std::size_t i = 0;
-    if (waits_)
-      parts_.each([&](auto& part) {
-        if (i++ != which) part.withdraw();
+    if (waits_) {
+      const void* first = nullptr;
+      std::size_t i = 0;
+      parts_.each([&](const auto& part) {
+        if (i++ == which) first = &part;
       });
+      withdraw(parts_, [first](const auto& part) { return &part != first; });
+    }
     return parts_.first(which);
   }
 

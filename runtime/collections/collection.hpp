@@ -155,8 +155,20 @@ class Collection : public HostedCollection {
     return std::exchange(unwatched_ends_, {});
   }
   /// The element stays here, as if a coroutine of it waited, until it is released; settle() follows.
-  static void hold(Element& element) { ++element.n_suspended_; }
-  static void release(Element& element) { --element.n_suspended_; }
+  static void hold(Element& element) {
+    ++element.n_suspended_;
+    ++element.n_held_;
+  }
+  static void release(Element& element) {
+    --element.n_suspended_;
+    --element.n_held_;
+  }
+  /// True if the element has called destroy(), and none of its code runs outside the present
+  /// message or waits: it stays only since it is held, and gets no more calls of all.
+  [[nodiscard]] bool is_over(const Element& element) const {
+    const std::uint32_t runs_now = pe_.context().element == &element ? 1 : 0;
+    return element.destroy_requested_ && element.n_suspended_ == element.n_held_ + runs_now;
+  }
   /// The element waits until its balancer resumes it.
   void at_sync(Element& element);
   /// The message of resume() has arrived. Returns false if it was sent to an earlier incarnation of
@@ -220,6 +232,8 @@ class Collection : public HostedCollection {
   /// Writes the sections whose root is this PE, and returns their ids.
   std::vector<SectionId> save_sections(Writer& ar) const;
   virtual void restore_sections(Reader& ar) = 0;
+  /// Drops the messages that wait here for absent elements and have lost their purpose.
+  virtual void drop_unwanted() = 0;
   /// After a restart: the section had ended before the checkpoint.
   void section_had_ended(SectionId id);
 

@@ -38,10 +38,7 @@ void end_arrives(Pe& pe, End&& m) {
 }
 
 void freeing_arrives(Pe& pe, Free&& m) {
-  const Pe::Ending ending = pe.take_ending(m.id);
-  static_cast<Collection&>(*ending.collection)
-      .reductions()
-      .end();  // the last coroutines may have contributed
+  const Pe::Ending ending = pe.take_ending(m.id);  // frees it at the end of this function
   pe.completion().processed(ending.epoch);
 }
 

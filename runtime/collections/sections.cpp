@@ -175,7 +175,7 @@ bool Sections::join(Element& element, SectionId id, std::uint32_t ordinal) {
       seat.part->reduction.contribute(seat.member().next++, epoch, std::move(value));
     collection_.pe().completion().processed(epoch);
   }
-  --element.n_suspended_;
+  Collection::release(element);
   return true;
 }
 
@@ -240,8 +240,8 @@ void Sections::deliver(const Seat& seat, const SectionCall& call) {
     early.erase(next);
     lists_->send_again(element, part.id, waiting);
   }
-  // An element that is to be destroyed may still wait for Join of another section.
-  if (!element.destroy_requested_) this->call(element, call);
+  // An element that is over may still wait for Join of another section.
+  if (!collection_.is_over(element)) this->call(element, call);
 }
 
 std::vector<std::uint32_t> Sections::deliver_listed(SectionPart& part, const SectionCall& call) {
@@ -265,7 +265,7 @@ Sections::Seat Sections::find_contributor(SectionPart& part, Element& element) {
   if (seat.part != nullptr) return seat;
   Collection::require_not_destroyed(element,
                                     " contributes in its destructor: contribute before destroy()");
-  ++element.n_suspended_;  // it stays here until Join has reached it
+  Collection::hold(element);  // it stays here until Join has reached it
   const Seat added = add(part, element, SectionPart::Member{});
   part.reduction.advance();
   return added;
@@ -362,7 +362,7 @@ void Sections::free(std::unique_ptr<SectionPart> part, std::vector<Element*>& re
     settle_early(pe, member.early);
     if (!member.joined) {
       for (const auto& held : member.held) pe.completion().processed(held.epoch);
-      --member.element->n_suspended_;
+      Collection::release(*member.element);
       released.push_back(member.element);
     }
     const auto seats = seats_.find(member.element);
@@ -378,6 +378,7 @@ void Sections::free(std::unique_ptr<SectionPart> part, std::vector<Element*>& re
 void Sections::end(SectionId id) {
   ended_.add(CollectionId{id.value});
   last_ = nullptr;
+  collection_.drop_unwanted();  // Join may wait here for an index that has no element
   if (lists_) lists_->end(id);
   auto node = parts_.extract(id.value);
   if (node.empty()) return;

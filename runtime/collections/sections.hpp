@@ -158,6 +158,9 @@ class Sections {
 
   /// The section ends on this PE.
   void end(SectionId id);
+  [[nodiscard]] bool has_ended(SectionId id) const {
+    return ended_.contains(CollectionId{id.value});
+  }
   /// After a restart: the section had ended before the checkpoint.
   void had_ended(SectionId id) { ended_.add(CollectionId{id.value}); }
   /// The collection ends on this PE.

@@ -10,7 +10,8 @@
 //                            tess::EntryMethod<&Cell::refine, tess::Priority{5}, tess::create_home>>;
 //     };
 //
-// They hold for every message to the entry method, and a priority also for its broadcasts.
+// They hold for every message to the entry method, a priority also for its broadcasts, and
+// inline_when_local for send() only.
 #pragma once
 
 #include "runtime/messages/entry_traits.hpp"
@@ -36,9 +37,9 @@ struct CreateHome {};
 /// of the element runs or waits. Otherwise, and in a deep chain of such calls, it is queued as
 /// usual.
 inline constexpr InlineWhenLocal inline_when_local{};
-/// send() acts as send_or_create_here().
+/// send() acts as send_or_create_here(), and ask() creates the element likewise.
 inline constexpr CreateHere create_here{};
-/// send() acts as send_or_create_home().
+/// send() acts as send_or_create_home(), and ask() creates the element likewise.
 inline constexpr CreateHome create_home{};
 
 /// The attributes of entry method F.

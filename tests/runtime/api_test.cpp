@@ -271,6 +271,48 @@ TEST_CASE("a future is moved, also once its result is there", "[api]") {
   });
 }
 
+namespace {
+
+/// Has a future as a member, and awaits it on several PEs.
+class Traveller : public tess::Chare<Traveller> {
+ public:
+  void give(tess::Callback<int> target) { target(tess::my_pe().value); }
+  tess::Task ask_itself(tess::Callback<int> target) {
+    if (n_asked_++ > 0) news_ = tess::Future<int>();
+    const auto own = news_.callback();
+    using Place = std::tuple<tess::PeId, std::uint64_t>;
+    CHECK(std::get<0>(tess::from_bytes<Place>(own.where())) == tess::my_pe());
+    self().send<&Traveller::give>(own);
+    const int pe = co_await news_;
+    target(pe);
+  }
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(n_asked_);
+  }
+
+ private:
+  tess::Future<int> news_;
+  int n_asked_ = 0;
+};
+
+tess::Task travel() {
+  const auto travellers = tess::create<Traveller>(tess::range(1));
+  for (const int to : {1, 0, 1, 2, 3}) {
+    co_await tess::epoch([&] { travellers[{0}].migrate_to(tess::PeId{to}); });
+    tess::Future<int> met;
+    travellers[{0}].send<&Traveller::ask_itself>(met.callback());
+    const int pe = co_await met;
+    CHECK(pe == to);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("a future that is a member has its result on the PE where it is used", "[api]") {
+  over_seeds(&travel);
+}
+
 TEST_CASE("an entry method has any number of arguments, and overloads", "[api]") {
   over_seeds([]() -> tess::Task {
     const auto nodes = tess::create<Node>(tess::range(4));

@@ -2,6 +2,7 @@
 
 #include "runtime/machine/simulated.hpp"
 #include "runtime/runtime.hpp"
+#include "runtime/when.hpp"
 #include "tests/support/catch.hpp"
 
 namespace {
@@ -53,6 +54,78 @@ TEST_CASE("messages of one key are taken in the order in which they were put",
     REQUIRE(tess::run(setup, []() -> tess::Task { return fill_and_read(); }) == 0);
     CHECK(taken == std::vector<int>{0, 1, 2, 3, 100, 101, 102, 103});
   }
+}
+
+/// Waits for several notes at once and puts back those that it cannot use.
+class Returner : public tess::Chare<Returner, tess::Index1> {
+ public:
+  void refuse() { tess::fail(tess::ErrorCode::bad_value, "refused"); }
+  void fail_with_three() {
+    put_three();
+    (void)take_three();
+  }
+  /// The same while another coroutine waits for a note.
+  void fail_before_another() {
+    put_three();
+    (void)take_three();
+    (void)take_first();
+  }
+  /// All come in one message, while it waits for any of them.
+  tess::Task choose() {
+    self().send<&Returner::put_four>();
+    (void)co_await tess::when_any(notes_.take(8), notes_.take(7), notes_.take(7), notes_.take(7));
+    take_rest();
+  }
+  void put_three() {
+    for (int number = 0; number < 3; ++number) notes_.put(Note{7, number});
+  }
+  void put_four() {
+    notes_.put(Note{8, 100});
+    put_three();
+  }
+
+ private:
+  tess::Task take_three() {
+    try {
+      (void)co_await tess::when_all(notes_.take(7), notes_.take(7), notes_.take(7),
+                                    array()[{1}].ask<&Returner::refuse>());
+    } catch (const tess::Error&) {
+      take_rest();
+    }
+  }
+  tess::Task take_first() { first = (co_await notes_.take(7)).number; }
+  void take_rest() {
+    while (notes_.size() > 0) (void)take_one();
+  }
+  tess::Task take_one() { taken.push_back((co_await notes_.take(7)).number); }
+
+  tess::Mailbox<&Note::key> notes_;
+
+ public:
+  static inline int first = -1;
+};
+
+template <auto F>
+void put_back() {
+  taken.clear();
+  Returner::first = -1;
+  tess::Setup setup;
+  tess::SimulatedOptions options;
+  options.n_pes = 2;
+  options.cost = tess::Time(100);
+  setup.machine = tess::make_simulated_machine(options);
+  REQUIRE(tess::run(setup,
+                    [] { tess::create<Returner>(tess::range(2))[{0}].template send<F>(); }) == 0);
+}
+
+TEST_CASE("messages of one key that are put back together keep their order", "[runtime][mailbox]") {
+  put_back<&Returner::fail_with_three>();
+  CHECK(taken == std::vector<int>{0, 1, 2});
+  put_back<&Returner::choose>();
+  CHECK(taken == std::vector<int>{0, 1, 2});
+  put_back<&Returner::fail_before_another>();
+  CHECK(Returner::first == 0);
+  CHECK(taken == std::vector<int>{1, 2});
 }
 
 }  // namespace

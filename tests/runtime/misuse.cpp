@@ -123,6 +123,26 @@ class Block : public tess::Chare<Block, tess::Index1> {
   void serialize(Ar& /*ar*/) {}
 };
 
+/// Moves before the result of its future is there.
+class Hasty : public tess::Chare<Hasty> {
+ public:
+  void leave() {
+    (void)result_.callback();
+    migrate_to(PeId{1});
+  }
+  void use() { (void)result_.callback(); }
+  template <class Ar>
+  void serialize(Ar& /*ar*/) {}
+
+ private:
+  tess::Future<int> result_;
+};
+tess::Task future_after_move() {
+  const auto all = tess::create<Hasty>(tess::range(1));
+  co_await tess::epoch([&] { all[{0}].send<&Hasty::leave>(); });
+  all[{0}].send<&Hasty::use>();
+}
+
 /// A map that does not ask how many PEs there are.
 struct ToItsNumber {
   PeId operator()(const tess::Index1& index, std::int32_t /*n_pes*/) const { return {index.x}; }
@@ -529,6 +549,7 @@ const std::map<std::string, std::function<void()>> misuses{
     {"future_awaited_twice", [] { const tess::Task task = future_awaited_twice(); }},
     {"task_awaited_at_once", [] { const tess::Task task = task_awaited_at_once(); }},
     {"ask_awaited_twice", [] { const tess::Task task = ask_awaited_twice(); }},
+    {"future_after_move", [] { const tess::Task task = future_after_move(); }},
     {"future_given_two", [] { const tess::Task task = future_given_two(); }},
     {"derived_in_a_pointer", &draw_circle},
     {"negative_argument", [] { blocks()[{0}].send<&Block::count>(-1); }},

@@ -42,6 +42,10 @@ class Actor : public tess::Chare<Actor> {
     array()[{1}].with(tess::Priority{-8}).send<&Actor::say>("earlier");
     array()[{1}].send<&Actor::say>("plain");
   }
+  tess::Task act_by_ask() {
+    array()[{1}].send<&Actor::say>("plain");
+    co_await array()[{1}].ask<&Actor::say_soon>("by the class");
+  }
   void act_inline() {
     array()[{1}].send<&Actor::say_at_once>("other");
     said.push_back("after other");
@@ -100,6 +104,11 @@ TEST_CASE("a section's broadcast has the priority of its entry method", "[runtim
                                          "by the class", "plain"});
 }
 
+TEST_CASE("an awaited call has the priority of its entry method", "[runtime][priority]") {
+  REQUIRE(act<&Actor::act_by_ask>(2) == 0);
+  CHECK(said == std::vector<std::string>{"by the class", "plain"});
+}
+
 TEST_CASE("an inline entry method runs inside send(), but not inside its own element",
           "[runtime][priority]") {
   REQUIRE(act<&Actor::act_inline>(2) == 0);
@@ -134,6 +143,38 @@ TEST_CASE("an entry method that creates on demand needs no other call", "[runtim
             tess::create<Actor>(tess::sparse)[{5}].send<&Actor::on_demand>("here");
           }) == 0);
   CHECK(said == std::vector<std::string>{"here"});
+}
+
+namespace {
+
+/// Is created by the first call, and says where.
+class Summoned : public tess::Chare<Summoned> {
+ public:
+  [[nodiscard]] int come_here() { return tess::my_pe().value; }
+  [[nodiscard]] int come_home() { return tess::my_pe().value; }
+  using EntryAttributes =
+      tess::Attributes<tess::EntryMethod<&Summoned::come_here, tess::create_here>,
+                       tess::EntryMethod<&Summoned::come_home, tess::create_home>>;
+};
+
+tess::Task summon(std::vector<int>& places) {
+  const auto all = tess::create<Summoned>(tess::sparse);
+  std::vector<tess::Index1> away;  // their home is the other PE
+  for (int x = 0; away.size() < 3; ++x)
+    if (all.here().home({x}) != tess::my_pe()) away.push_back({x});
+  places.push_back(co_await all[away[0]].ask<&Summoned::come_here>());
+  places.push_back(co_await all[away[1]].ask<&Summoned::come_home>());
+  places.push_back(co_await all[away[2]].with(tess::expedited).ask<&Summoned::come_here>());
+}
+
+}  // namespace
+
+TEST_CASE("an awaited call creates its element where the entry method's attributes say",
+          "[runtime][priority]") {
+  std::vector<int> places;
+  tess::Setup setup{tess::make_threads_machine(2), {}};
+  REQUIRE(tess::run(setup, [&]() -> tess::Task { return summon(places); }) == 0);
+  CHECK(places == std::vector<int>{0, 1, 0});
 }
 
 namespace {

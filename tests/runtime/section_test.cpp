@@ -2,6 +2,7 @@
 // and sections.
 #include "runtime/machine/simulated.hpp"
 #include "runtime/runtime.hpp"
+#include "runtime/when.hpp"
 #include "tests/support/catch.hpp"
 
 namespace {
@@ -144,7 +145,35 @@ tess::Task push(std::vector<int>& heard) {
   heard = co_await pushers.reduce<&Pusher::report>();
 }
 
+/// A section ends before one of its indices has had an element, and before or after the message to
+/// that index has reached its home.
+tess::Task end_before_all_have_joined(bool at_once) {
+  const auto riders = tess::create<Rider>(tess::range(2));
+  const std::vector<tess::Index1> members{{0}, {1}, {99}};
+  if (at_once) {
+    co_await tess::epoch([&] {
+      const auto section = tess::create_section(riders, members);
+      section.broadcast<&Rider::hear>();
+      section.destroy();
+    });
+  } else {
+    const auto section = tess::create_section(riders, members);
+    section.broadcast<&Rider::hear>();
+    co_await tess::sleep(std::chrono::milliseconds(1));
+    co_await tess::epoch([&] { section.destroy(); });
+  }
+}
+
 }  // namespace
+
+TEST_CASE("a section that ends waits for no index without an element", "[runtime][section]") {
+  for (const bool at_once : {true, false}) {
+    for (std::uint64_t seed = 1; seed <= 50; ++seed) {
+      INFO("seed " << seed << (at_once ? ", at once" : ", later"));
+      CHECK(run_on_four(seed, [&] { return end_before_all_have_joined(at_once); }) == 0);
+    }
+  }
+}
 
 TEST_CASE("a member that another member's call moves away before its turn receives the multicast",
           "[runtime][section]") {

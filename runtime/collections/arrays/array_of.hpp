@@ -208,6 +208,7 @@ class ArrayOf : public Collection {
   }
 
   void restore_sections(Reader& ar) override;
+  void drop_unwanted() override;
   void describe_waiting(std::vector<std::string>& lines) const override;
   void end() override;
   [[nodiscard]] std::uint64_t packed_bytes(Element& element) const override;
@@ -335,6 +336,11 @@ class ArrayOf : public Collection {
   void ship(Indexed& element, PeId to, Memberships&& memberships);
   void destroy_here(Indexed& element);
   void dead_letter(CallMessage* message);
+  /// True if the message need not wait for its element (ElementAction::Unwanted).
+  [[nodiscard]] bool unwanted(const CallMessage& message) {
+    const auto is = static_cast<const ElementAction<Index>&>(*message.action).unwanted;
+    return is != nullptr && is(*this, message);
+  }
   void end_element(Indexed& element);
   void reroute(std::vector<CallMessage*>&& messages) {
     for (CallMessage* message : messages) arrive_later(message);

@@ -118,9 +118,9 @@ void ArrayOf<Index>::add_arrived(Indexed* element, PeId from, Memberships&& memb
   list(*element);
   enter_sections(*element, std::move(memberships));
   // It stays until it has received the broadcasts that it missed: only then has it arrived.
-  ++element->n_suspended_;
+  hold(*element);
   for (const NumberedCall& call : broadcasts().missed(seen)) {
-    if (element->destroy_requested_ || pe_.stopped()) break;
+    if (is_over(*element) || pe_.stopped()) break;
     pe_.begins(&call.call->action());
     this->call(*element, call);
     // The epoch of the call that requests the next migration waits for it.
@@ -133,7 +133,7 @@ void ArrayOf<Index>::add_arrived(Indexed* element, PeId from, Memberships&& memb
     send_to_collection<&move_report_arrives, Traffic::location>(*this, home(index), report);
   }
   pe_.completion().processed(epoch);
-  --element->n_suspended_;
+  release(*element);
   settle(*element);
 }
 

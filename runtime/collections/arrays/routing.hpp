@@ -3,6 +3,8 @@
 
 #include "runtime/collections/arrays/array_of.hpp"
 
+#include <algorithm>
+
 namespace tess::detail {
 
 template <class Index>
@@ -153,7 +155,7 @@ void ArrayOf<Index>::at_home(CallMessage* message, const Record* record) {
     return;
   }
   if (message->demand == Demand::member) {
-    if (destroyed) {
+    if (destroyed || unwanted(*message)) {
       dead_letter(message);
     } else {
       park(message, Parked::waiting);
@@ -189,6 +191,19 @@ void ArrayOf<Index>::dead_letter(CallMessage* message) {
   pe_.statistics().dead_letters += action.n_dead_letters();
   discard(message);
   pe_.completion().processed(epoch);
+}
+
+template <class Index>
+void ArrayOf<Index>::drop_unwanted() {
+  std::vector<Index> indices;
+  for (const auto& [index, messages] : waiting_)
+    if (std::ranges::any_of(messages, [this](const auto* one) { return unwanted(*one); }))
+      indices.push_back(index);
+  // The others are parked again.
+  for (const Index& index : indices) {
+    reroute(unpark(index, Parked::waiting));
+    table_.tidy(index);
+  }
 }
 
 template <class Index>

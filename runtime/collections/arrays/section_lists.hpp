@@ -85,9 +85,10 @@ class SectionListsOf final : public SectionLists {
     using Base::Base;
     static void invoke(Element& element, ElementMessage<Index>& message);
     static void undelivered(Pe& pe, ElementMessage<Index>& message);
-    static inline const ElementAction<Index> entry{std::type_identity<JoinCall>{},
-                                                   &JoinCall::invoke, nullptr, Traffic::control,
-                                                   &JoinCall::undelivered};
+    static bool unwanted(Collection& array, const ElementMessage<Index>& message);
+    static inline const ElementAction<Index> entry{
+        std::type_identity<JoinCall>{}, &JoinCall::invoke,  nullptr, Traffic::control,
+        &JoinCall::undelivered,         &JoinCall::unwanted};
   };
   struct TokenCall final : TypedMessage<TokenCall, AnyChare<Index>, std::tuple<SectionToken>> {
     using Base = TypedMessage<TokenCall, AnyChare<Index>, std::tuple<SectionToken>>;
@@ -153,12 +154,21 @@ void SectionListsOf<Index>::JoinCall::invoke(Element& element, ElementMessage<In
 
 template <class Index>
 void SectionListsOf<Index>::JoinCall::undelivered(Pe& pe, ElementMessage<Index>& message) {
-  const Collection* array = find_collection(pe, message.collection);
+  Collection* array = find_collection(pe, message.collection);
   if (array == nullptr || array->ended()) return;  // its sections ended with it
+  // Where the section still lives, a result that lacks this index would be delivered.
+  if (unwanted(*array, message)) return;
   const auto& [join] = static_cast<JoinCall&>(message).arguments;
   send_to_collection<&lost_arrives>(pe, message.collection,
                                     root_of(CollectionId{join.section.value}, pe.n_pes()),
                                     SectionLost{join.section, join.ordinal});
+}
+
+template <class Index>
+bool SectionListsOf<Index>::JoinCall::unwanted(Collection& array,
+                                               const ElementMessage<Index>& message) {
+  const auto& [join] = static_cast<const JoinCall&>(message).arguments;
+  return array.sections().has_ended(join.section);
 }
 
 template <class Index>

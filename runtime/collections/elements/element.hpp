@@ -86,12 +86,13 @@ class TessElement {
   Collection* collection_ = nullptr;
   std::unique_ptr<BalanceRecord, EndRecord> balance_;  // if a balancer watches its array
   ElementState state_;
-  std::uint32_t slot_ = 0;          // slot in the collection's list
-  std::uint32_t n_suspended_ = 0;   // waiting coroutines and running handlers of this element
-  PeId migrate_to_{-1};             // the PE to move to once none of its code runs or waits
-  bool destroy_requested_ = false;  // to be destroyed once none of its code runs or waits
-  bool has_run_ = false;            // code other than its constructor has run here
-  bool in_sections_ = false;        // it is a member of sections, which are listed in Sections
+  std::uint32_t slot_ = 0;              // slot in the collection's list
+  std::uint32_t n_suspended_ = 0;       // waiting coroutines, running handlers, and n_held_
+  PeId migrate_to_{-1};                 // the PE to move to once none of its code runs or waits
+  bool has_run_ = false;                // code other than its constructor has run here
+  bool destroy_requested_ : 1 = false;  // to be destroyed once none of its code runs or waits
+  bool in_sections_ : 1 = false;        // it is a member of sections, which are listed in Sections
+  std::uint16_t n_held_ = 0;  // reasons of the runtime for which it stays (Collection::hold)
 };
 
 using Element = TessElement;

@@ -65,18 +65,21 @@ struct ElementAction : Action {
   /// The message will never be delivered, since its element or the array was destroyed. Such a
   /// message is no dead letter.
   using Undelivered = void (*)(Pe&, ElementMessage<Index>&);
+  /// True if the message has lost its purpose: then it does not wait for its element.
+  using Unwanted = bool (*)(Collection&, const ElementMessage<Index>&);
 
   /// The action of `Message`. `traffic` is user, or control for a message that the user did not
   /// send and that is no dead letter. (A constructor, and no function that returns the action:
   /// where a program never names `Message::entry`, g++ 12 would register a temporary instead.)
   template <class Message>
   explicit ElementAction(std::type_identity<Message> /*of*/, Invoke i, Construct c = nullptr,
-                         Traffic t = Traffic::user, Undelivered u = nullptr)
+                         Traffic t = Traffic::user, Undelivered u = nullptr, Unwanted w = nullptr)
       : Action(naming::name_of<Message>(), Message::run, destroy_of<Message>(), &Message::pack,
                &Message::unpack, t, priority_function<Message>()),
         invoke(i),
         construct(c),
-        undelivered(u) {}
+        undelivered(u),
+        unwanted(w) {}
 
   /// The number of dead letters (0 or 1) for a message of this kind that is not delivered.
   [[nodiscard]] std::uint64_t n_dead_letters() const {
@@ -86,6 +89,7 @@ struct ElementAction : Action {
   Invoke invoke;
   Construct construct;
   Undelivered undelivered;
+  Unwanted unwanted;
 
  private:
   template <class Message>

@@ -57,7 +57,7 @@ void* FutureTable::require(std::uint64_t id) {
              "again after the restart, and send its new callback()");
   TESS_CHECK(future != nullptr,
              "the result of a future arrived after its coroutine had continued or ended: keep the "
-             "future until its result is there");
+             "future until its result is there, and give it one result");
   return future;
 }
 

@@ -1,6 +1,6 @@
-// The futures that were made on a PE, by number: where a result from another PE finds the future it
-// belongs to. A future that moves or is destroyed says so, and a number is not used again, so that
-// a late result finds nothing. One thread.
+// The futures that are in use on a PE, by number: where a result from another PE finds the future it
+// belongs to. A future that moves, has given its result or is destroyed says so, and a number is not
+// used again, so that a late result finds nothing. One thread.
 //
 //     number = place | how often the place had been used before << 32
 //

@@ -43,6 +43,7 @@ tess::Task keep(std::string folder, int n_futures) {
   Kept state;
   state.keepers = tess::create<Keeper>(tess::range(5));
   const std::vector<tess::Future<int>> more(static_cast<std::size_t>(n_futures));
+  for (const tess::Future<int>& one : more) (void)one.callback();
   const tess::Future<int> sum;
   state.target = sum.callback();
   state.keepers.broadcast<&Keeper::keep>(sum.callback());
@@ -54,6 +55,7 @@ tess::Task keep(std::string folder, int n_futures) {
 tess::Task call_old(std::string folder, bool by_main) {
   const auto state = co_await tess::restart<Kept>(folder);
   std::vector<tess::Future<int>> some(40);
+  for (const tess::Future<int>& one : some) (void)one.callback();
   if (by_main)
     state.target(3);
   else

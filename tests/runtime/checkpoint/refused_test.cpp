@@ -270,6 +270,7 @@ struct Restarting {
   }
   static tess::Task restart_with_future(const std::string& folder) {
     const tess::Future<int> made;
+    (void)made.callback();
     (void)co_await tess::restart<State>(folder);
   }
   static tess::Task restart_after_an_array(const std::string& folder) {

@@ -2,6 +2,7 @@
 #include "runtime/balance.hpp"
 #include "runtime/machine/simulated.hpp"
 #include "runtime/runtime.hpp"
+#include "runtime/when.hpp"
 #include "tests/support/catch.hpp"
 
 #include <malloc.h>
@@ -285,6 +286,67 @@ TEST_CASE(
   });
   CHECK(ending.exit_code == 0);
   CHECK(Sleeper::n_resumed == 1);
+}
+
+/// Asks for its end, and waits for a note before it.
+class Leaving : public tess::Chare<Leaving, tess::Index1> {
+ public:
+  static inline int n_left = 0;
+  void hop(int to) { migrate_to(tess::PeId{to % tess::n_pes()}); }
+  void meet() {}
+  tess::Task leave() {
+    destroy();
+    (void)co_await notes_.take(3);
+    ++n_left;
+  }
+  void put() { notes_.put(Waiter::Note{3}); }
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(notes_);
+  }
+
+ private:
+  tess::Mailbox<&Waiter::Note::key> notes_;
+};
+
+tess::Task leave_by_multicast() {
+  const auto all = tess::create<Leaving>(tess::range(3));
+  const auto section = tess::create_section(all, {{0}, {1}, {2}});
+  co_await tess::epoch([&] { section.broadcast<&Leaving::meet>(); });
+  for (int x = 0; x < 3; ++x) all[{x}].send<&Leaving::leave>();
+  co_await tess::sleep(std::chrono::milliseconds(1));
+  section.broadcast<&Leaving::put>();
+}
+
+TEST_CASE("a member that waits after destroy() receives the multicasts of its section",
+          "[runtime][destroy]") {
+  Leaving::n_left = 0;
+  const Ending ending = run(2, []() -> tess::Task { return leave_by_multicast(); });
+  CHECK(ending.exit_code == 0);
+  CHECK(ending.report == "");
+  CHECK(Leaving::n_left == 3);
+}
+
+TEST_CASE("an element that waits after destroy() receives the broadcasts of its journey",
+          "[runtime][destroy]") {
+  for (std::uint64_t seed = 0; seed < 100; ++seed) {
+    INFO("seed " << seed);
+    Leaving::n_left = 0;
+    tess::Setup setup;
+    tess::SimulatedOptions options;
+    options.n_pes = 4;
+    options.seed = seed;
+    options.cost = tess::Time(100);
+    setup.machine = tess::make_simulated_machine(options);
+    setup.options.report = [](const std::string&) {};  // moves may come too late
+    CHECK(tess::run(setup, [] {
+            const auto all = tess::create<Leaving>(tess::range(6));
+            for (int x = 0; x < 6; ++x) all[{x}].send<&Leaving::hop>(x + 1);
+            all.broadcast<&Leaving::leave>();
+            all.broadcast<&Leaving::put>();
+          }) == 0);
+    CHECK(Leaving::n_left == 6);
+  }
 }
 
 }  // namespace
