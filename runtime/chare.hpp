@@ -5,6 +5,11 @@
 // Any member function that returns void or tess::Task is an entry method. A chare that migrates or
 // is created on demand needs a default constructor; a chare that migrates also needs `template
 // <class Ar> void serialize(Ar& ar)`.
+//
+// The default constructor runs again wherever an element is rebuilt from its bytes: after a
+// migration to another process, and in a restart. What it contributes, at_sync(), migrate_to() and
+// destroy() have no effect then. But messages that it sends, timers that it sets, what it creates
+// and coroutines that it starts come again.
 #pragma once
 
 #include "runtime/collections/arrays/array_of.hpp"

@@ -8,11 +8,36 @@
 #include "runtime/core/hash.hpp"
 #include "runtime/core/text.hpp"
 #include "runtime/scheduler/interfaces/element_mover.hpp"
+#include "runtime/scheduler/pe_action.hpp"
 #include "runtime/scheduler/runtime.hpp"
 
 #include <exception>
 
 namespace tess::detail {
+namespace {
+
+/// An element that is held, in the queue of its own PE, which it never leaves.
+struct Settling {
+  Element* element = nullptr;
+  std::uint32_t led_by = 0;
+  CollectionId led_in{};
+  template <class Ar>
+  void serialize(Ar& /*ar*/) {
+    TESS_CHECK(false, "an element that is held cannot leave its PE");
+  }
+};
+
+void run_settling(Pe& pe, Settling&& settling) {
+  Context& context = pe.context();
+  const EpochId epoch = context.epoch;
+  context.led_by = settling.led_by;
+  context.led_in = settling.led_in;
+  Collection::release(*settling.element);
+  Collection::of(*settling.element).settle(*settling.element);
+  pe.completion().processed(epoch);
+}
+
+}  // namespace
 
 std::string element_text(const Element& element) {
   return element.collection_->name() + element.collection_->index_text_of(element);
@@ -188,6 +213,8 @@ void Collection::apply(const NumberedCall& call) {
   for (std::size_t i = 0; i < n; ++i) {
     Element* element = elements_[i];
     if (element == nullptr || element->state_.seen_broadcast >= call.number) continue;
+    if (is_over(*element)) [[unlikely]]
+      continue;  // it would have ended by now
     this->call(*element, call);
     if (pe_.stopped()) break;
   }
@@ -331,6 +358,16 @@ void Collection::at_sync(Element& element) {
 void Collection::move(Element& element, PeId to) {
   element.migrate_to_ = to;
   settle(element);
+}
+
+void Collection::settle_later(Element& element) {
+  Pe& pe = current_pe();
+  hold(element);
+  const Context& context = pe.context();
+  auto* message =
+      pe.stamp(make_message<&run_settling>(pe, Settling{&element, context.led_by, context.led_in}));
+  pe.completion().sent(message->epoch);
+  pe.run_next(message);
 }
 
 void Collection::resume(Element& element) {

@@ -199,6 +199,9 @@ class Collection : public HostedCollection {
   /// Called after code of the element ran: the element leaves or is destroyed now if that was
   /// requested and none of its code waits.
   virtual void settle(Element& element) = 0;
+  /// Holds the element until the running message is done, and settles it then. The current epoch
+  /// waits for this.
+  static void settle_later(Element& element);
 
   /// A constructor requests something that needs the element to be listed: `call` runs once it is.
   /// For initial elements of an array, `call` runs once all of them are listed on this PE.

@@ -244,20 +244,13 @@ void Sections::deliver(const Seat& seat, const SectionCall& call) {
   if (!collection_.is_over(element)) this->call(element, call);
 }
 
-std::vector<std::uint32_t> Sections::deliver_listed(SectionPart& part, const SectionCall& call) {
-  std::vector<std::uint32_t> left;
+void Sections::deliver_listed(SectionPart& part, const SectionCall& call) {
   const Run run(*this, part, call);
   const std::size_t n = part.members.size();  // elements that contribute meanwhile are added
   const std::uint64_t generation = part.generation;
-  for (std::size_t i = 0; i < n && !collection_.pe().stopped(); ++i) {
-    if (part.members[i].listed != generation) continue;
-    if (part.members[i].element == nullptr) {  // another member's call has made it leave
-      left.push_back(part.members[i].ordinal);
-      continue;
-    }
-    deliver(Seat{&part, static_cast<std::uint32_t>(i)}, call);
-  }
-  return left;
+  for (std::size_t i = 0; i < n && !collection_.pe().stopped(); ++i)
+    if (part.members[i].listed == generation)
+      deliver(Seat{&part, static_cast<std::uint32_t>(i)}, call);
 }
 
 Sections::Seat Sections::find_contributor(SectionPart& part, Element& element) {

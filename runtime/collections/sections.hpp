@@ -119,9 +119,8 @@ class Sections {
 
   /// Calls the member, or keeps the call until its turn. Within a Run.
   void deliver(const Seat& seat, const SectionCall& call);
-  /// Calls all members that are listed here. Returns those that left before their turn.
-  [[nodiscard]] std::vector<std::uint32_t> deliver_listed(SectionPart& part,
-                                                          const SectionCall& call);
+  /// Calls all members that are listed here. (No call makes another member leave at once.)
+  void deliver_listed(SectionPart& part, const SectionCall& call);
   /// While it lives, members keep their slots, and what they cause belongs to the call's epoch.
   class Run {
    public:

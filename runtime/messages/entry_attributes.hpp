@@ -35,7 +35,7 @@ struct CreateHere {};
 struct CreateHome {};
 /// A message to an element of this PE runs inside send(), if an entry method sends it and no code
 /// of the element runs or waits. Otherwise, and in a deep chain of such calls, it is queued as
-/// usual.
+/// usual. An element that ends or moves by it does so once the sender's message is done.
 inline constexpr InlineWhenLocal inline_when_local{};
 /// send() acts as send_or_create_here(), and ask() creates the element likewise.
 inline constexpr CreateHere create_here{};

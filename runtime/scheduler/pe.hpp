@@ -21,6 +21,7 @@
 #include <cstdint>
 #include <exception>
 #include <initializer_list>
+#include <limits>
 #include <memory>
 #include <span>
 #include <string>
@@ -144,6 +145,12 @@ class Pe {
     } else {
       enqueue(message);
     }
+  }
+  /// Runs a message on this PE before all others, and before what an adversary does meanwhile.
+  void run_next(Envelope* message) {
+    completion_.hop_sent();
+    message->target = id_;
+    ready_.push(message, std::numeric_limits<std::int64_t>::min());
   }
   /// Sends to this PE, once the delay is over, a message that epoch 0 does not count.
   void post_after(Time delay, Envelope* message);
@@ -287,6 +294,8 @@ class Pe {
     return context_->element != nullptr && n_nested_ < most_nested &&
            constructed_index_ == nullptr && !stopped_;
   }
+  /// True inside a call of an entry method that another has made.
+  [[nodiscard]] bool nests() const { return n_nested_ != 0; }
   static constexpr unsigned most_nested = 16;
   /// Marks a call of an entry method inside another, or, with most_nested, code that must not call
   /// any.

@@ -66,12 +66,30 @@ class Actor : public tess::Chare<Actor> {
     array()[{1}].send<&Actor::say_at_once>("never");
   }
   void end_at_once() { destroy(); }
+  void go_at_once() { migrate_to(tess::PeId{1}); }
+  template <auto F>
+  void keep_local() {
+    const Actor* const other = array().local({1});
+    array()[{1}].send<F>();
+    said.push_back(array().local({1}) == other ? "still here" : "gone");
+    self().send<&Actor::look_for_other>();
+  }
+  void look_for_other() { said.push_back(array().local({1}) == nullptr ? "gone" : "still here"); }
+  void end_next() {
+    said.push_back("met by " + std::to_string(index().x));
+    if (index().x + 1 < array().size()) array()[{index().x + 1}].send<&Actor::end_at_once>();
+  }
+  void end_next_by_broadcast() { array().broadcast<&Actor::end_next>(); }
+
+  template <class Ar>
+  void serialize(Ar& /*ar*/) {}
 
   using EntryAttributes =
       tess::Attributes<tess::EntryMethod<&Actor::say_soon, tess::Priority{-7}>,
                        tess::EntryMethod<&Actor::say_at_once, tess::inline_when_local>,
                        tess::EntryMethod<&Actor::throw_at_once, tess::inline_when_local>,
                        tess::EntryMethod<&Actor::end_at_once, tess::inline_when_local>,
+                       tess::EntryMethod<&Actor::go_at_once, tess::inline_when_local>,
                        tess::EntryMethod<&Actor::dive, tess::inline_when_local>,
                        tess::EntryMethod<&Actor::on_demand, tess::create_here, tess::expedited>>;
 };
@@ -134,6 +152,20 @@ TEST_CASE("an element that ends inside a send() gets no more messages", "[runtim
   REQUIRE(act<&Actor::leave_inside>(2) == 0);
   REQUIRE(said.size() == 1);
   CHECK_THAT(said[0], Catch::Contains("1 messages to elements that had been destroyed"));
+}
+
+TEST_CASE("an element that ends or moves inside a send() stays until the sender's message is done",
+          "[runtime][priority]") {
+  REQUIRE(act<&Actor::keep_local<&Actor::end_at_once>>(2) == 0);
+  CHECK(said == std::vector<std::string>{"still here", "gone"});
+  REQUIRE(act<&Actor::keep_local<&Actor::go_at_once>>(4, 2) == 0);
+  CHECK(said == std::vector<std::string>{"still here", "gone"});
+}
+
+TEST_CASE("an element that ends inside a send() is not called by the broadcast that runs",
+          "[runtime][priority]") {
+  REQUIRE(act<&Actor::end_next_by_broadcast>(2) == 0);
+  CHECK(said == std::vector<std::string>{"met by 0"});
 }
 
 TEST_CASE("an entry method that creates on demand needs no other call", "[runtime][priority]") {

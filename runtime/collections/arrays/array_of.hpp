@@ -186,7 +186,8 @@ class ArrayOf : public Collection {
 
   void settle(Element& element) override {
     if (element.n_suspended_ != 0) return;
-    const Pe::Nested none(pe_, Pe::most_nested);  // its destructor may send messages
+    if (pe_.nests()) return settle_later(element);  // the caller may have it as an object (local())
+    const Pe::Nested none(pe_, Pe::most_nested);    // its destructor may send messages
     if (element.destroy_requested_) {
       destroy_here(static_cast<Indexed&>(element));
     } else if (element.migrate_to_.value >= 0) {

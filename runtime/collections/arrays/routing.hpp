@@ -2,8 +2,7 @@
 #pragma once
 
 #include "runtime/collections/arrays/array_of.hpp"
-
-#include <algorithm>
+#include "runtime/core/algorithm.hpp"
 
 namespace tess::detail {
 
@@ -197,7 +196,8 @@ template <class Index>
 void ArrayOf<Index>::drop_unwanted() {
   std::vector<Index> indices;
   for (const auto& [index, messages] : waiting_)
-    if (std::ranges::any_of(messages, [this](const auto* one) { return unwanted(*one); }))
+    if (std::any_of(messages.begin(), messages.end(),
+                    [this](const auto* one) { return unwanted(*one); }))
       indices.push_back(index);
   // The others are parked again.
   for (const Index& index : indices) {

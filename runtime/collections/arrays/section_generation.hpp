@@ -4,7 +4,6 @@
 #pragma once
 
 #include "runtime/collections/sections.hpp"
-#include "runtime/core/algorithm.hpp"
 
 #include <cstdint>
 #include <vector>
@@ -40,11 +39,6 @@ struct SectionGeneration {
     all.reserve(entries.size());
     for (const Entry& entry : entries) all.push_back(entry.ordinal);
     return all;
-  }
-  /// The entry of an ordinal that is on the list.
-  [[nodiscard]] const Entry& entry(std::uint32_t ordinal) const {
-    return *std::lower_bound(entries.begin(), entries.end(), ordinal,
-                             [](const Entry& one, std::uint32_t o) { return one.ordinal < o; });
   }
 };
 

@@ -348,8 +348,7 @@ void SectionListsOf<Index>::deliver(SectionId id, std::uint64_t number,
     send_token(id, entry.index, call);
   };
   if (number == part.generation && part.n_listed == generation.entries.size()) {
-    for (const std::uint32_t ordinal : sections().deliver_listed(part, call))
-      forward(generation.entry(ordinal));
+    sections().deliver_listed(part, call);
     return;
   }
   std::vector<const Entry*> here;
@@ -363,11 +362,7 @@ void SectionListsOf<Index>::deliver(SectionId id, std::uint64_t number,
   const Sections::Run run(sections(), part, call);
   for (const Entry* entry : here) {
     if (array_.pe().stopped()) return;
-    if (const auto at = part.slots.find(entry->ordinal); at != part.slots.end()) {
-      sections().deliver({&part, at->second}, call);
-    } else {
-      forward(*entry);  // another member's call has made it leave
-    }
+    sections().deliver({&part, part.slots.at(entry->ordinal)}, call);
   }
 }
 
