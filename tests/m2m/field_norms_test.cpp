@@ -6,6 +6,7 @@
 #include "runtime/core/hash.hpp"
 #include "runtime/machine/threads.hpp"
 #include "runtime/testing.hpp"
+#include "tests/m2m/error_norms.hpp"
 #include "tests/support/catch.hpp"
 
 #include <algorithm>
@@ -15,6 +16,7 @@
 
 using namespace tess;
 using namespace tess::m2m;
+using tess::test::error_norms;
 
 namespace {
 

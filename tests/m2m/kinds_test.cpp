@@ -4,6 +4,7 @@
 #include "m2m/transfer.hpp"
 #include "runtime/testing.hpp"
 #include "tests/m2m/element_meshes.hpp"
+#include "tests/m2m/error_norms.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/n_seeds.hpp"
 #include "tests/support/scratch.hpp"
@@ -15,6 +16,7 @@
 
 using namespace tess;
 using namespace tess::m2m;
+using tess::test::error_norms;
 
 namespace {
 
