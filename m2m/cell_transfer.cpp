@@ -65,16 +65,16 @@ void choose_coupling(TransferOptions& options, CellForm form) {
 
 }  // namespace
 
-Task transfer_cells(const TetMesh& source, const std::vector<Field>& fields, const TetMesh& target,
-                    std::int32_t n_parts, PartitionMethod method, TransferOptions options,
-                    CellOutcome* outcome) {
-  outcome->fields.clear();
+TaskOf<CellOutcome> transfer_cells(const TetMesh& source, const std::vector<Field>& fields,
+                                   const TetMesh& target, std::int32_t n_parts,
+                                   PartitionMethod method, TransferOptions options) {
+  CellOutcome outcome;
   for (const Field& field : fields) {
     TESS_CHECK(field.values.size() == source.n_tets() * field.n_components, "field ", field.name,
                ": expected ", source.n_tets() * field.n_components, " values, got ",
                field.values.size());
-    outcome->fields.push_back({field.name, field.n_components,
-                               std::vector<double>(target.n_tets() * field.n_components, 0.0)});
+    outcome.fields.push_back({field.name, field.n_components,
+                              std::vector<double>(target.n_tets() * field.n_components, 0.0)});
   }
   if (std::holds_alternative<Nearest>(options.policy) && options.kind != TransferKind::nearest)
     fail(ErrorCode::bad_argument, "kind ", name_of(options.kind),
@@ -97,10 +97,10 @@ Task transfer_cells(const TetMesh& source, const std::vector<Field>& fields, con
   ArrayProxy<CellWorker> from, to;
   co_await epoch([&] {
     from = scatter_cells(source, fields, give);
-    to = scatter_cells(target, outcome->fields, take);
+    to = scatter_cells(target, outcome.fields, take);
   });
   Coupling coupling(from, to, options);
-  co_await coupling.search(&outcome->search);
+  outcome.search = co_await coupling.search();
   if (!fields.empty()) {
     if (options.on_phase) options.on_phase("apply");
     co_await coupling.apply<&CellWorker::values, &CellWorker::result>();
@@ -108,12 +108,12 @@ Task transfer_cells(const TetMesh& source, const std::vector<Field>& fields, con
   Future<Outcome> gathered;
   to.broadcast<&CellWorker::gather>(coupling.id(), gathered.callback());
   const Outcome all = co_await gathered;
-  outcome->status.resize(target.n_tets());
+  outcome.status.resize(target.n_tets());
   const double* row = all.values.data();
   for (std::size_t i = 0; i < all.points.size(); ++i) {
     const auto tet = static_cast<std::size_t>(all.points[i]);
-    outcome->status[tet] = all.status[i];
-    for (Field& field : outcome->fields) {
+    outcome.status[tet] = all.status[i];
+    for (Field& field : outcome.fields) {
       std::copy_n(row, field.n_components, field.values.data() + tet * field.n_components);
       row += field.n_components;
     }
@@ -123,6 +123,7 @@ Task transfer_cells(const TetMesh& source, const std::vector<Field>& fields, con
     from.destroy();
     to.destroy();
   });
+  co_return outcome;
 }
 
 }  // namespace tess::m2m

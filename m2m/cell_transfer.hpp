@@ -37,13 +37,13 @@ struct CellOutcome {
 
 /// `fields`: n_tets rows of the source each; the tetrahedra of an element have the same value. Cuts
 /// each mesh into `n_parts`. Target cells that the policy keeps have the value 0. Without fields it
-/// finds the status of the target's cells. `source`, `fields` and `target` outlive the task.
+/// finds the status of the target's cells. `source`, `fields` and `target` must outlive the task.
 ///
 /// Throws Error (bad_argument), before anything is sent, for a kind and a policy that do not go
 /// together (only kind nearest has a nearest cell, and none that is outside), for a tolerance that
 /// is not from 0 to 1e100, and for a tolerance or clamp with conservative kinds.
-Task transfer_cells(const TetMesh& source, const std::vector<Field>& fields, const TetMesh& target,
-                    std::int32_t n_parts, PartitionMethod method, TransferOptions options,
-                    CellOutcome* outcome);
+TaskOf<CellOutcome> transfer_cells(const TetMesh& source, const std::vector<Field>& fields,
+                                   const TetMesh& target, std::int32_t n_parts,
+                                   PartitionMethod method, TransferOptions options);
 
 }  // namespace tess::m2m

@@ -127,7 +127,7 @@ struct AnyCoupling::State {
     setup.clamp = options.clamp;
     setup.source_values = options.source_values;
     setup.target_values = options.target_values;
-    setup.collider = collide::make_collider({options.voxel_origin, options.voxel_size, {}});
+    setup.collider = collide::make_collider({Point{}, options.voxel_size, {}});
     setup.ledger = create_group<Ledger>();
     if (has_directory()) setup.directory = create_group<PointDirectory>();
     // Each coupling has its own collider.
@@ -186,15 +186,15 @@ void AnyCoupling::destroy() {
 namespace {
 
 /// Gives what the pieces have added to the ledger since the last call.
-Task close_page(GroupProxy<Ledger> ledger, LedgerPage* page) {
+TaskOf<LedgerPage> close_page(GroupProxy<Ledger> ledger) {
   Future<LedgerPage> closed;
   ledger.broadcast<&Ledger::close_page>(closed.callback());
-  *page = co_await closed;
+  co_return co_await closed;
 }
 
 }  // namespace
 
-Task AnyCoupling::search(SearchSummary* summary) {
+TaskOf<SearchSummary> AnyCoupling::search() {
   State& state = *state_;
   TESS_CHECK(state.under_way.n_searches == 0 && state.under_way.n_applications == 0,
              "a coupling searches while a search or an application of it is under way: co_await "
@@ -209,9 +209,9 @@ Task AnyCoupling::search(SearchSummary* summary) {
   LedgerPage found;
   if (state.is_conservative()) {
     co_await find_overlaps();
-    co_await close_page(state.setup.ledger, &found);
+    found = co_await close_page(state.setup.ledger);
   } else {
-    co_await find_donors(found);
+    found = co_await find_donors();
   }
   // Source pieces of conservative kinds have entered their names; otherwise they were named, since
   // such target pieces were found.
@@ -219,8 +219,7 @@ Task AnyCoupling::search(SearchSummary* summary) {
     co_await epoch([&, source = *found.least_source] {
       state.setup.target.broadcast<&AnyPiece::m2m_attach_if_alone>(state.setup.id, source);
     });
-  if (summary != nullptr)
-    *summary = {seconds(broad - start), seconds(now() - broad), found.tally, found.worst};
+  co_return SearchSummary{seconds(broad - start), seconds(now() - broad), found.tally, found.worst};
 }
 
 Task AnyCoupling::collide_covers() {
@@ -248,22 +247,22 @@ Task AnyCoupling::collide_covers() {
 
 /// Only points that are in no tetrahedron need to know all source pieces, and pieces without sources
 /// one of them.
-Task AnyCoupling::find_donors(LedgerPage& found) {
+TaskOf<LedgerPage> AnyCoupling::find_donors() {
   const CouplingSetup& setup = state_->setup;
   co_await epoch([&] { setup.target.broadcast<&AnyPiece::m2m_ask>(setup.id); });
-  co_await close_page(setup.ledger, &found);
-  if (found.n_waiting == 0 && found.n_alone == 0) co_return;
+  LedgerPage found = co_await close_page(setup.ledger);
+  if (found.n_waiting == 0 && found.n_alone == 0) co_return found;
   co_await epoch([&] { setup.source.broadcast<&AnyPiece::m2m_name_source>(setup.id); });
-  LedgerPage page;
-  co_await close_page(setup.ledger, &page);
+  LedgerPage page = co_await close_page(setup.ledger);
   std::sort(page.sources.begin(), page.sources.end(),
             [](const SourcePiece& a, const SourcePiece& b) { return a.owner < b.owner; });
   if (!page.sources.empty()) found.least_source = page.sources.front().owner;
-  if (found.n_waiting == 0) co_return;
+  if (found.n_waiting == 0) co_return found;
   co_await epoch(
       [&] { setup.target.broadcast<&AnyPiece::m2m_ask_nearest>(setup.id, page.sources); });
-  co_await close_page(setup.ledger, &page);
+  page = co_await close_page(setup.ledger);
   found += page;
+  co_return found;
 }
 
 /// Each step needs all messages of the one before.

@@ -62,7 +62,6 @@ struct Collider;
 namespace tess::m2m {
 
 struct CouplingOptions {
-  Point voxel_origin{0, 0, 0};
   Point voxel_size{0, 0, 0};  ///< zero: chosen
   /// For target points outside the source: Keep or UseValue with conservative kinds. With kind
   /// nearest, Keep is Nearest.
@@ -115,8 +114,8 @@ class AnyCoupling {
   [[nodiscard]] const CouplingSetup& setup() const;
 
   /// Finds the donors. The pieces and their coordinates stay as they are until it is done, and no
-  /// other search and no application of this coupling is under way. `summary` may be null.
-  Task search(SearchSummary* summary = nullptr);
+  /// other search and no application of this coupling is under way.
+  TaskOf<SearchSummary> search();
 
   /// Frees what the pieces and PEs hold of this coupling; a search makes it again. The enclosing
   /// epoch includes this. No search and no application of it is under way. Arrays of pieces are
@@ -131,7 +130,7 @@ class AnyCoupling {
   struct State;
 
   Task collide_covers();
-  Task find_donors(LedgerPage& found);
+  TaskOf<LedgerPage> find_donors();
   Task find_overlaps();
 
   std::unique_ptr<State> state_;
@@ -145,9 +144,9 @@ class Coupling : public AnyCoupling {
   Coupling(ArrayProxy<S> source, ArrayProxy<T> target, CouplingOptions options = {})
       : AnyCoupling(PieceArray(source), PieceArray(target), std::move(options)) {}
 
-  Task search(SearchSummary* summary = nullptr) {
+  TaskOf<SearchSummary> search() {
     static_assert(detail::check_piece<S>() && detail::check_piece<T>());
-    return AnyCoupling::search(summary);
+    return AnyCoupling::search();
   }
 
   /// Gives the field that Give shows to the memory that Take shows, for example

@@ -54,8 +54,8 @@ WeightMatrix matrix_of(const GlobalRows& rows, std::int64_t n_sources, std::int6
   return matrix;
 }
 
-Task collect_weights(const AnyCoupling& coupling, std::int64_t n_sources, std::int64_t n_targets,
-                     WeightMatrix* out) {
+TaskOf<WeightMatrix> collect_weights(const AnyCoupling& coupling, std::int64_t n_sources,
+                                     std::int64_t n_targets) {
   const CouplingSetup setup = coupling.setup();
   TESS_CHECK(
       setup.id != CouplingId{},
@@ -71,7 +71,7 @@ Task collect_weights(const AnyCoupling& coupling, std::int64_t n_sources, std::i
   book.broadcast<&RowBook::close_page>(page.callback());
   const GlobalRows rows = co_await page;
   co_await epoch([&] { book.destroy(); });
-  *out = matrix_of(rows, n_sources, n_targets);
+  co_return matrix_of(rows, n_sources, n_targets);
 }
 
 }  // namespace tess::m2m

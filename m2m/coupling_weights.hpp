@@ -1,7 +1,7 @@
 // The weights of a coupling as a sparse matrix, for files (weights_file.hpp) and other programs:
 //
-//     WeightMatrix weights;
-//     co_await collect_weights(coupling, n_source_vertices, n_target_vertices, &weights);
+//     const WeightMatrix weights =
+//         co_await collect_weights(coupling, n_source_vertices, n_target_vertices);
 //
 // The rows travel to one PE, whose memory holds the matrix: about 100 bytes per target vertex. A
 // transfer itself never needs that.
@@ -31,13 +31,13 @@ void require_weights(TransferKind kind, bool clamp);
 /// bits of the coupling; for second_order the same up to rounding; `limited` has no weights and is
 /// refused. Targets outside the source have no weights, except those with the nearest vertex
 /// (Nearest): one weight of 1.
-Task collect_weights(const AnyCoupling& coupling, std::int64_t n_sources, std::int64_t n_targets,
-                     WeightMatrix* out);
+TaskOf<WeightMatrix> collect_weights(const AnyCoupling& coupling, std::int64_t n_sources,
+                                     std::int64_t n_targets);
 
 /// The same for a transfer between meshes that the library holds.
-inline Task collect_weights(const Transfer& transfer, std::int64_t n_sources,
-                            std::int64_t n_targets, WeightMatrix* out) {
-  return collect_weights(transfer.coupling(), n_sources, n_targets, out);
+inline TaskOf<WeightMatrix> collect_weights(const Transfer& transfer, std::int64_t n_sources,
+                                            std::int64_t n_targets) {
+  return collect_weights(transfer.coupling(), n_sources, n_targets);
 }
 
 }  // namespace tess::m2m

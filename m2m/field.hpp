@@ -56,12 +56,6 @@ struct ErrorNorms {
   std::size_t n_vertices = 0;  ///< vertices included; without any, the norms are NaN
 };
 
-/// `values`, `truth`: one number per vertex. `counts`: true for each vertex that is included; an
-/// empty vector includes all vertices.
-[[nodiscard]] ErrorNorms error_norms(const TetMesh& mesh, std::span<const double> values,
-                                     std::span<const double> truth,
-                                     const std::vector<bool>& counts = {});
-
 /// FNV-1a (64 bits) over the bits of the values in order, each value from its lowest byte on. The
 /// result of one call can be the `start` of the next.
 [[nodiscard]] std::uint64_t result_hash(std::span<const double> values,

@@ -61,7 +61,7 @@ FieldNorms norms_of(const ComponentSums& sums, const NormSums& whole) {
 
 }  // namespace
 
-Task measure_norms(DistributedMesh mesh, NormsRequest request, std::vector<FieldNorms>* out) {
+TaskOf<std::vector<FieldNorms>> measure_norms(DistributedMesh mesh, NormsRequest request) {
   if (request.truth.size() != mesh.n_components)
     fail(ErrorCode::bad_argument, request.mesh, " has ", mesh.n_components, " components, and ",
          request.truth.size(), " formulas are given; give one per component");
@@ -74,8 +74,9 @@ Task measure_norms(DistributedMesh mesh, NormsRequest request, std::vector<Field
     throw Error(ErrorCode::bad_value,
                 not_finite_text(request.truth[static_cast<std::size_t>(bad.component)].name,
                                 bad.value, bad.vertex, request.mesh, bad.at));
-  out->clear();
-  for (const ComponentSums& one : sums.components) out->push_back(norms_of(one, sums));
+  std::vector<FieldNorms> norms;
+  for (const ComponentSums& one : sums.components) norms.push_back(norms_of(one, sums));
+  co_return norms;
 }
 
 std::vector<FieldColumns> scalar_columns(std::uint64_t n) {
@@ -84,8 +85,8 @@ std::vector<FieldColumns> scalar_columns(std::uint64_t n) {
   return columns;
 }
 
-Task hash_values(DistributedMesh mesh, GlobalId n_vertices, std::vector<FieldColumns> fields,
-                 std::uint64_t* hash) {
+TaskOf<std::uint64_t> hash_values(DistributedMesh mesh, GlobalId n_vertices,
+                                  std::vector<FieldColumns> fields) {
   for (const FieldColumns& field : fields)
     TESS_CHECK(field.first + field.n <= mesh.n_components, "a field has components up to ",
                field.first + field.n, ", the mesh has ", mesh.n_components);
@@ -97,8 +98,8 @@ Task hash_values(DistributedMesh mesh, GlobalId n_vertices, std::vector<FieldCol
       const HashStart start{field.first, field.n, so_far};
       so_far = co_await keepers[PeId{pe}].ask<&ValueKeeper::extend>(start);
     }
-  *hash = so_far;
   keepers.destroy();
+  co_return so_far;
 }
 
 }  // namespace tess::m2m

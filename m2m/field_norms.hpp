@@ -29,7 +29,8 @@ struct FieldNorms {
 /// Compares the values, and the status that the last transfer into the mesh gave, with the formulas
 /// at the points where they are now. Throws Error (bad_argument) if there are not as many formulas
 /// as components, or a formula has a mistake, (bad_value) with the vertex where one is not finite.
-Task measure_norms(DistributedMesh mesh, NormsRequest request, std::vector<FieldNorms>* out);
+/// Gives the norms per component.
+TaskOf<std::vector<FieldNorms>> measure_norms(DistributedMesh mesh, NormsRequest request);
 
 /// The components of a field among those of a mesh.
 struct FieldColumns {
@@ -40,7 +41,7 @@ struct FieldColumns {
 
 /// result_hash() of the fields one after the other, each in the order of the vertices, its rows in
 /// that of the components. `n_vertices`: of the whole mesh.
-Task hash_values(DistributedMesh mesh, GlobalId n_vertices, std::vector<FieldColumns> fields,
-                 std::uint64_t* hash);
+TaskOf<std::uint64_t> hash_values(DistributedMesh mesh, GlobalId n_vertices,
+                                  std::vector<FieldColumns> fields);
 
 }  // namespace tess::m2m

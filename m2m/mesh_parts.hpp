@@ -1,7 +1,6 @@
 // Cuts a mesh into parts for an application's own chares (coupling.hpp).
 #pragma once
 
-#include "m2m/mesh_view.hpp"
 #include "m2m/partition/split.hpp"
 #include "m2m/partition_method.hpp"
 
@@ -16,10 +15,5 @@ namespace tess::m2m {
 [[nodiscard]] std::vector<MeshPart> mesh_parts(const TetMesh& mesh, std::int32_t n_parts,
                                                PartitionMethod method,
                                                std::int32_t halo_layers = 0);
-
-/// A part as couplings see it, valid as long as the part.
-[[nodiscard]] inline MeshView view_of(const MeshPart& part) {
-  return {part.points, part.tets, part.point_ids, part.tet_ids, part.n_owned, part.n_own_tets};
-}
 
 }  // namespace tess::m2m

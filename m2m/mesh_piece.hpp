@@ -40,8 +40,9 @@ class MeshPiece : public Piece<C> {
   MeshPart mesh;  ///< serialised by the chare if it migrates
 
   [[nodiscard]] MeshView mesh_view() const {
-    return {mesh.points,    mesh.tets, mesh.point_ids, mesh.tet_ids, std::ssize(mesh.points),
-            mesh.n_own_tets};
+    MeshView view = view_of(mesh);
+    view.n_owned = std::ssize(mesh.points);
+    return view;
   }
   /// Takes its part, and calls the member function loaded() of the chare.
   void m2m_load(const MeshPart& part) {

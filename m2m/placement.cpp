@@ -34,41 +34,45 @@ Aabb checked_bounds(const PlacerReport& report, const PlacerSetup& setup) {
   return report.findings.bounds;
 }
 
-/// Reads and checks the mesh. `corners` gets the task of its messages about corners, some of which
-/// may be under way.
-Task read_and_measure(GroupProxy<Placer> placers, PlacerSetup setup, MeshCensus* census,
-                      std::vector<Task>& corners, Measured* measured_all) {
+/// A mesh that was read and checked.
+struct ReadMesh {
+  MeshCensus census;
+  Measured measured;
+  std::vector<Task> corners;  // of the messages about corners, some of which may be under way
+};
+
+TaskOf<ReadMesh> read_and_measure(GroupProxy<Placer> placers, PlacerSetup setup) {
+  ReadMesh mesh;
   Future<PlacerReport> read;
-  corners.push_back(step<&Placer::read>(placers, read.callback()));
+  mesh.corners.push_back(step<&Placer::read>(placers, read.callback()));
   const PlacerReport report = co_await read;
   std::exception_ptr refused;
   try {
-    census->bounds = checked_bounds(report, setup);
+    mesh.census.bounds = checked_bounds(report, setup);
   } catch (...) {
     refused = std::current_exception();
   }
   if (refused) {
-    co_await when_all(std::move(corners));
+    co_await when_all(std::move(mesh.corners));
     std::rethrow_exception(refused);
   }
 
   Future<Measured> measured;
-  placers.broadcast<&Placer::measure>(census->bounds, measured.callback());
-  *measured_all = co_await measured;
-  const Measured& all = *measured_all;
+  placers.broadcast<&Placer::measure>(mesh.census.bounds, measured.callback());
+  mesh.measured = co_await measured;
+  const Measured& all = mesh.measured;
   all.report.findings.refuse_bad_shapes(setup.shown_name, static_cast<std::uint64_t>(setup.n_tets));
-  census->n_flat = all.report.findings.n_flat;
-  census->n_inverted = all.report.findings.n_inverted;
+  mesh.census.n_flat = all.report.findings.n_flat;
+  mesh.census.n_inverted = all.report.findings.n_inverted;
+  co_return mesh;
 }
 
 // A step whose messages the PEs count begins before they have arrived; so every PE goes on as soon
 // as it can.
-Task lead(GroupProxy<Placer> placers, PlacerSetup setup, MeshCensus* census) {
-  std::vector<Task> corners;
-  Measured all;
-  co_await read_and_measure(placers, setup, census, corners, &all);
+TaskOf<MeshCensus> lead(GroupProxy<Placer> placers, PlacerSetup setup) {
+  ReadMesh mesh = co_await read_and_measure(placers, setup);
   CurveCut cut(static_cast<std::uint64_t>(setup.n_tets), setup.n_parts);
-  if (!cut.is_done()) cut.refine(all.counts);
+  if (!cut.is_done()) cut.refine(mesh.measured.counts);
   while (!cut.is_done()) {
     Future<CellCounts> counts;
     placers.broadcast<&Placer::count>(cut, counts.callback());
@@ -77,7 +81,7 @@ Task lead(GroupProxy<Placer> placers, PlacerSetup setup, MeshCensus* census) {
   }
 
   co_await step<&Placer::send_tets>(placers, cut);
-  co_await when_all(std::move(corners));
+  co_await when_all(std::move(mesh.corners));
   Future<PlacerReport> finished;
   co_await step<&Placer::answer_points>(placers, finished.callback());
   if (setup.halo_layers > 0) {
@@ -90,7 +94,8 @@ Task lead(GroupProxy<Placer> placers, PlacerSetup setup, MeshCensus* census) {
   }
   const PlacerReport built = co_await finished;
   throw_first(built.error);
-  census->n_unused = built.n_unused;
+  mesh.census.n_unused = built.n_unused;
+  co_return mesh.census;
 }
 
 /// Sends the ranges of a mesh; of null none.
@@ -109,39 +114,41 @@ Task send_ranges(GroupProxy<Placer> placers, const TetMesh* whole) {
 }
 
 /// `whole`: the mesh if its ranges are sent, otherwise null.
-Task survey_ranges(PlacerSetup setup, const TetMesh* whole, MeshSurvey* out) {
+TaskOf<MeshSurvey> survey_ranges(PlacerSetup setup, const TetMesh* whole) {
+  MeshSurvey out;
   const GroupProxy<Placer> placers = create_group<Placer>(setup);
   std::exception_ptr error;
   try {
     co_await send_ranges(placers, whole);
-    std::vector<Task> corners;
-    Measured measured;
-    co_await read_and_measure(placers, setup, &out->census, corners, &measured);
-    co_await when_all(std::move(corners));
+    ReadMesh mesh = co_await read_and_measure(placers, setup);
+    co_await when_all(std::move(mesh.corners));
     Future<SurveyReport> counted;
     placers.broadcast<&Placer::count_extent>(counted.callback());
     const SurveyReport report = co_await counted;
     throw_first(report.error);
-    out->census.n_unused = report.n_unused;
-    out->longest_edge = std::sqrt(report.extent.longest_squared);
-    out->volume = report.extent.volume.total();
+    out.census = mesh.census;
+    out.census.n_unused = report.n_unused;
+    out.longest_edge = std::sqrt(report.extent.longest_squared);
+    out.volume = report.extent.volume.total();
   } catch (...) {
     error = std::current_exception();
   }
   co_await epoch([&] { placers.destroy(); });
   if (error) std::rethrow_exception(error);
-  out->n_points = setup.n_points;
-  out->n_tets = setup.n_tets;
+  out.n_points = setup.n_points;
+  out.n_tets = setup.n_tets;
+  co_return out;
 }
 
 /// `whole`: the mesh if its ranges are sent, otherwise null.
-Task place_ranges(PlacerSetup setup, const TetMesh* whole, PlacedMesh* placed) {
+TaskOf<PlacedMesh> place_ranges(PlacerSetup setup, const TetMesh* whole) {
+  PlacedMesh placed;
   setup.workers = create<Worker>(range(setup.n_parts));
   const GroupProxy<Placer> placers = create_group<Placer>(setup);
   std::exception_ptr error;
   try {
     co_await send_ranges(placers, whole);
-    co_await lead(placers, setup, &placed->census);
+    placed.census = co_await lead(placers, setup);
   } catch (...) {
     error = std::current_exception();
   }
@@ -154,9 +161,10 @@ Task place_ranges(PlacerSetup setup, const TetMesh* whole, PlacedMesh* placed) {
     std::rethrow_exception(error);
   }
   placers.destroy();  // the Workers need not wait for it
-  placed->mesh = {setup.workers, setup.n_parts, setup.fields.size(), setup.halo_layers};
-  placed->n_points = setup.n_points;
-  placed->n_tets = setup.n_tets;
+  placed.mesh = {setup.workers, setup.n_parts, setup.fields.size(), setup.halo_layers};
+  placed.n_points = setup.n_points;
+  placed.n_tets = setup.n_tets;
+  co_return placed;
 }
 
 PlacerSetup setup_of(std::string shown_name, PlaceOptions options) {
@@ -196,20 +204,19 @@ std::unique_ptr<MeshRanges> take_ranges(const std::string& name, PlacerSetup& se
 
 }  // namespace
 
-Task place(const TetMesh* mesh, PlaceOptions options, PlacedMesh* placed) {
+TaskOf<PlacedMesh> place(const TetMesh* mesh, PlaceOptions options) {
   PlacerSetup setup = setup_of(mesh->name, std::move(options));
   take_sizes(*mesh, setup);
-  co_await place_ranges(std::move(setup), mesh, placed);
+  co_return co_await place_ranges(std::move(setup), mesh);
 }
 
-Task place(std::string name, PlaceOptions options, PlacedMesh* placed) {
+TaskOf<PlacedMesh> place(std::string name, PlaceOptions options) {
   PlacerSetup setup = setup_of(name, options);
   if (take_ranges(name, setup) == nullptr) {
     const TetMesh mesh = read_mesh(name);
-    co_await place(&mesh, std::move(options), placed);
-    co_return;
+    co_return co_await place(&mesh, std::move(options));
   }
-  co_await place_ranges(std::move(setup), nullptr, placed);
+  co_return co_await place_ranges(std::move(setup), nullptr);
 }
 
 bool is_read_in_ranges(const std::string& name) {
@@ -220,21 +227,22 @@ bool is_read_in_ranges(const std::string& name) {
   }
 }
 
-Task survey(std::string name, std::vector<FormulaField> fields, MeshSurvey* out) {
+TaskOf<MeshSurvey> survey(std::string name, std::vector<FormulaField> fields) {
   PlacerSetup setup = setup_of(name, {1, 0, std::move(fields)});
   setup.is_survey = true;
-  *out = {};
   if (auto ranges = take_ranges(name, setup)) {
-    out->skipped = ranges->skipped;
+    std::string skipped = ranges->skipped;
     ranges.reset();
-    co_await survey_ranges(std::move(setup), nullptr, out);
-    co_return;
+    MeshSurvey out = co_await survey_ranges(std::move(setup), nullptr);
+    out.skipped = std::move(skipped);
+    co_return out;
   }
   const TetMesh mesh = read_mesh(name);
   take_sizes(mesh, setup);
-  out->skipped = skipped_text(mesh);
-  out->split = split_text(mesh);
-  co_await survey_ranges(std::move(setup), &mesh, out);
+  MeshSurvey out = co_await survey_ranges(std::move(setup), &mesh);
+  out.skipped = skipped_text(mesh);
+  out.split = split_text(mesh);
+  co_return out;
 }
 
 MeshSurvey survey(const TetMesh& mesh) {

@@ -27,6 +27,9 @@
 
 namespace tess::m2m {
 
+///     PlaceOptions options{.n_parts = 16};
+///     const PlacedMesh placed = co_await place("a.exo", options);
+///
 /// Give the options a name first: g++ 12 fails on an aggregate in a `co_await` expression.
 struct PlaceOptions {
   std::int32_t n_parts = 1;
@@ -43,11 +46,11 @@ struct PlacedMesh {
 
 /// Reads `name` (as read_mesh() does), cuts it by PartitionMethod::curve, and creates the Workers.
 /// The errors are those of read_mesh(), validate(), make_formula() and sample(). Side sets and node
-/// sets of a file that is read in ranges are not read. `placed` must outlive the task.
-Task place(std::string name, PlaceOptions options, PlacedMesh* placed);
+/// sets of a file that is read in ranges are not read.
+TaskOf<PlacedMesh> place(std::string name, PlaceOptions options);
 
 /// The same for a mesh in the memory of this PE, which it must outlive.
-Task place(const TetMesh* mesh, PlaceOptions options, PlacedMesh* placed);
+TaskOf<PlacedMesh> place(const TetMesh* mesh, PlaceOptions options);
 
 /// What survey() finds.
 struct MeshSurvey {
@@ -64,8 +67,8 @@ struct MeshSurvey {
 
 /// Reads and checks a mesh by all PEs together, as place() does, and keeps nothing of it. `fields`
 /// are evaluated at every point. The errors are those of read_mesh(), validate(), make_formula()
-/// and sample(). `out` must outlive the task.
-Task survey(std::string name, std::vector<FormulaField> fields, MeshSurvey* out);
+/// and sample().
+TaskOf<MeshSurvey> survey(std::string name, std::vector<FormulaField> fields);
 
 /// The same of a mesh in memory, without fields, by the caller alone.
 [[nodiscard]] MeshSurvey survey(const TetMesh& mesh);

@@ -32,18 +32,17 @@ Task Transfer::apply() {
   turns->pass_on(all_fields);
 }
 
-Task transfer(DistributedMesh source, DistributedMesh target, TransferOptions options,
-              TransferSummary* summary) {
+TaskOf<TransferSummary> transfer(DistributedMesh source, DistributedMesh target,
+                                 TransferOptions options) {
   Transfer handle(source, target, options);
-  SearchSummary search;
-  co_await handle.search(&search);
+  TransferSummary summary;
+  summary.search = co_await handle.search();
   if (options.on_phase) options.on_phase("apply");
   const Time start = now();
   co_await handle.apply();
-  const Time end = now();
+  summary.apply = seconds(now() - start);
   co_await epoch([&] { handle.destroy(); });
-  if (summary != nullptr)
-    *summary = {search.broad, search.narrow, seconds(end - start), search.tally, search.worst};
+  co_return summary;
 }
 
 }  // namespace tess::m2m

@@ -12,8 +12,7 @@
 //     co_await epoch(place);
 //
 //     const TransferOptions options{.policy = Nearest{}};
-//     TransferSummary summary;
-//     co_await transfer(source, target, options, &summary);
+//     const TransferSummary summary = co_await transfer(source, target, options);
 //
 //     Future<Outcome> outcome;
 //     target.workers.broadcast<&Worker::gather>(outcome.callback());
@@ -28,8 +27,8 @@
 //
 // Sample: tests/samples/transfer.cpp
 //
-//     Task first = transfer(a, b, options, nullptr);
-//     Task second = transfer(a, c, options, nullptr);
+//     auto first = transfer(a, b, options);
+//     auto second = transfer(a, c, options);
 //     co_await first;
 //     co_await second;
 //
@@ -65,8 +64,8 @@ class Transfer {
   Transfer(const DistributedMesh& source, const DistributedMesh& target,
            const TransferOptions& options);
 
-  /// Finds the donors. `summary` may be null.
-  Task search(SearchSummary* summary = nullptr) { return coupling_.search(summary); }
+  /// Finds the donors.
+  TaskOf<SearchSummary> search() { return coupling_.search(); }
   /// Moves all fields. When the task is done, every target vertex has its value. Applications of
   /// one Transfer run one after the other, in the order of the calls.
   Task apply();
@@ -82,15 +81,12 @@ class Transfer {
 
 /// Times and counts of one transfer. Times are wall-clock seconds on the calling PE.
 struct TransferSummary {
-  double broad = 0;   ///< pairs of parts that are near
-  double narrow = 0;  ///< point location, vertices outside
-  double apply = 0;   ///< interpolation, values, ghosts
-  Tally tally;        ///< of the target vertices
-  WorstPlaces worst;  ///< of the target vertices that are snapped or outside
+  SearchSummary search;
+  double apply = 0;  ///< interpolation, values, ghosts
 };
 
 /// A search and one application.
-Task transfer(DistributedMesh source, DistributedMesh target, TransferOptions options,
-              TransferSummary* summary);
+TaskOf<TransferSummary> transfer(DistributedMesh source, DistributedMesh target,
+                                 TransferOptions options);
 
 }  // namespace tess::m2m

@@ -6,8 +6,8 @@
 //     // …
 //     co_await wells[{2}].ask<&Well::slow>().within(5us);
 //
-// The function returns a value or nothing, or is a coroutine (tess::Task), whose end is awaited. An
-// Error that it throws, and one that says that no reply came within the limit, are thrown here.
+// The function returns a value or nothing, or is a coroutine (tess::Task, tess::TaskOf<T>), whose end
+// is awaited. An Error that it throws, and one that says that no reply came within the limit, are thrown here.
 //
 // An ask is a message with the number of a place on the asking PE; the reply is a message to that
 // place. The call is sent when ask() is called, so several may be under way at once: see when.hpp.
@@ -154,9 +154,9 @@ class AskOf : public AskBase {
 
 /// The value that member function F replies; NoValue for none.
 template <auto F>
-using ReplyValue = std::conditional_t<std::is_void_v<typename EntryTraits<F>::Result> ||
-                                          std::is_same_v<typename EntryTraits<F>::Result, Task>,
-                                      NoValue, typename EntryTraits<F>::Result>;
+using ReplyValue =
+    std::conditional_t<std::is_void_v<typename GivenBy<typename EntryTraits<F>::Result>::type>,
+                       NoValue, typename GivenBy<typename EntryTraits<F>::Result>::type>;
 
 template <class Place, class Tuple>
 struct WithPlace;
@@ -183,7 +183,7 @@ struct AskCall final
     std::apply(
         [&](const Place& to, auto&... argument) {
           auto& chare = to.template called<C>(element);
-          if constexpr (std::is_same_v<Result, Task>) {
+          if constexpr (GivenBy<Result>::is_task) {
             (void)serve(&chare, to, std::move(argument)...);
           } else {
             std::optional<Value> value;
@@ -235,15 +235,20 @@ struct AskCall final
   template <class Called, class... P>
   static Task serve(Called* chare, ReplyPlace to, P... argument) {
     const EpochId epoch = current_pe().context().epoch;
+    std::optional<Value> value;
     std::optional<Failure> failure;
     try {
-      Task work = (chare->*F)(std::move(argument)...);
-      co_await work;
+      Result work = (chare->*F)(std::move(argument)...);
+      if constexpr (std::is_same_v<Result, Task>) {
+        co_await work;
+        value.emplace();
+      } else {
+        Value given = co_await work;
+        value.emplace(std::move(given));
+      }
     } catch (const Error& error) {
       failure = Failure{error.code(), error.what()};
     }
-    std::optional<Value> value;
-    if (!failure) value.emplace();
     reply(to, epoch, std::move(value), std::move(failure));
   }
 };

@@ -43,7 +43,6 @@
 #include "runtime/task.hpp"
 
 #include <cstddef>
-#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -81,30 +80,6 @@ template <class State>
   return detail::latest_checkpoint(folder);
 }
 
-/// The result of restart(): `co_await` gives the state object.
-template <class State>
-class [[nodiscard]] Restart {
- public:
-  explicit Restart(const std::string& folder)
-      : bytes_(std::make_unique<std::vector<std::byte>>()),
-        task_(detail::read_checkpoint(folder, std::string(name_of_type<State>), *bytes_)) {}
-
-  [[nodiscard]] bool await_ready() const noexcept { return task_.await_ready(); }
-  void await_suspend(Task::Handle parent) { task_.await_suspend(parent); }
-  State await_resume() {
-    task_.await_resume();
-    try {
-      return from_bytes<State>(*bytes_);
-    } catch (const Error& error) {
-      detail::refuse_state(name_of_type<State>, error);
-    }
-  }
-
- private:
-  std::unique_ptr<std::vector<std::byte>> bytes_;  // before the task, which writes to it
-  Task task_;
-};
-
 /// Restores the latest good checkpoint of the folder. A damaged one is reported on standard error,
 /// and the one before is used; likewise a damaged file whose buddy copy is used. Called before
 /// anything else in the main coroutine. Throws Error if there is none that this program can restore
@@ -113,8 +88,14 @@ class [[nodiscard]] Restart {
 /// first to arrive becomes the member and absorbs the others, in any order; a PE without one gets a
 /// member from the default constructor.
 template <class State>
-Restart<State> restart(const std::string& folder) {
-  return Restart<State>(folder);
+TaskOf<State> restart(std::string folder) {
+  const std::vector<std::byte> bytes =
+      co_await detail::read_checkpoint(std::move(folder), std::string(name_of_type<State>));
+  try {
+    co_return from_bytes<State>(bytes);
+  } catch (const Error& error) {
+    detail::refuse_state(name_of_type<State>, error);
+  }
 }
 
 }  // namespace tess

@@ -72,6 +72,9 @@ std::function<void()> as_message(Main main) {
   if constexpr (std::is_same_v<std::invoke_result_t<Main>, Task>) {
     return [main = std::move(main)] { const Task task = main(); };
   } else {
+    static_assert(!std::is_base_of_v<AnyTask, std::invoke_result_t<Main>>,
+                  "the function given to run() returns void or tess::Task: nothing would take a "
+                  "value");
     return std::function<void()>(std::move(main));
   }
 }

@@ -5,6 +5,8 @@
 #include "runtime/report/pe_watch.hpp"
 #include "runtime/scheduler/pe_action.hpp"
 
+#include <cstdlib>
+
 namespace tess {
 namespace detail {
 namespace {
@@ -73,12 +75,12 @@ void TaskAccount::unpin(Element& element) {
   --element.n_suspended_;
 }
 
-}  // namespace detail
-
-Task::promise_type::promise_type() {
+TaskPromise::TaskPromise() {
   account.pe = &current_pe();
   account.context = account.pe->context();
 }
+
+}  // namespace detail
 
 void suspend(Task::Handle task, std::function<detail::WaitReason()> waits_for) {
   detail::TaskAccount& account = task.promise().account;
@@ -97,15 +99,19 @@ void resume_later(Task::Handle task) {
   pe.send_here(message);
 }
 
-void detail::Waiter::wake() {
+}  // namespace tess
+
+namespace tess::detail {
+
+void Waiter::wake() {
   if (--n_left_ == 0) resume_later(task_);
 }
-void detail::Waiter::wake_at_end() {
+void Waiter::wake_at_end() {
   if (--n_left_ == 0) resume(task_);
 }
 
-void Task::promise_type::Final::await_suspend(std::coroutine_handle<promise_type> self) noexcept {
-  promise_type& promise = self.promise();
+void TaskPromise::Final::await_suspend(TaskHandle self) noexcept {
+  TaskPromise& promise = self.promise();
   if (promise.parent) {
     resume_later(promise.parent);
   } else if (promise.detached) {
@@ -116,9 +122,9 @@ void Task::promise_type::Final::await_suspend(std::coroutine_handle<promise_type
   }
 }
 
-Task::~Task() {
+AnyTask::~AnyTask() {
   if (!handle_) return;
-  promise_type& promise = handle_.promise();
+  TaskPromise& promise = handle_.promise();
   if (!handle_.done()) {
     if (promise.account.pe->dropping()) {
       handle_.destroy();
@@ -131,10 +137,15 @@ Task::~Task() {
   handle_.destroy();
 }
 
-void Task::await_suspend(Handle parent) {
+void AnyTask::await_suspend(TaskHandle parent) {
   TESS_CHECK(handle_.promise().parent == nullptr, "two coroutines await one task");
   handle_.promise().parent = parent;
   suspend(parent, [] { return std::string("a task that it called"); });
 }
 
-}  // namespace tess
+void refuse_second_await() {
+  TESS_CHECK(false, "a task is awaited again: the first co_await took its result, so keep that");
+  std::abort();
+}
+
+}  // namespace tess::detail

@@ -1,7 +1,8 @@
-// tess::Task: the result type of an entry method that may wait. It runs immediately up to the first
-// co_await that is not ready; when the awaited result is there, the coroutine is put back into the
-// queue of its PE. While a coroutine waits, its element neither migrates nor ends, and its epoch is
-// not done. Only named member functions (and the function passed to run()) may be coroutines.
+// tess::Task: the result type of an entry method that may wait; tess::TaskOf<T>: of a coroutine that
+// gives a value. It runs immediately up to the first co_await that is not ready; when the awaited
+// result is there, the coroutine is put back into the queue of its PE. While a coroutine waits, its
+// element neither migrates nor ends, and its epoch is not done. Only named functions (and the
+// function passed to run()) may be coroutines.
 #pragma once
 
 #include "runtime/scheduler/block.hpp"
@@ -11,6 +12,7 @@
 #include <cstddef>
 #include <exception>
 #include <functional>
+#include <optional>
 #include <type_traits>
 #include <utility>
 
@@ -34,67 +36,151 @@ struct TaskAccount {
   static void unpin(Element& element);
 };
 
-}  // namespace detail
+class TaskPromise;
 
-class [[nodiscard]] Task {
+/// The handle of a coroutine of any type of task.
+struct TaskHandle : std::coroutine_handle<TaskPromise> {
+  TaskHandle() = default;
+  template <std::derived_from<TaskPromise> Promise>
+  TaskHandle(std::coroutine_handle<Promise> task)
+      : std::coroutine_handle<TaskPromise>(
+            std::coroutine_handle<TaskPromise>::from_address(task.address())) {
+    // A frame has its promise behind two pointers, rounded up to the alignment of the promise.
+    static_assert(alignof(Promise) <= 2 * sizeof(void*));
+  }
+};
+
+/// What the promises of all tasks have: the first part of each.
+class TaskPromise {
  public:
-  struct promise_type {
-    /// Frames are allocated from the pool of the PE.
-    static void* operator new(std::size_t n_bytes) {
-      return detail::allocate_block(current_pe(), n_bytes);
-    }
-    static void operator delete(void* frame, std::size_t n_bytes) {
-      detail::release_block(frame, n_bytes);
-    }
+  /// Frames are allocated from the pool of the PE.
+  static void* operator new(std::size_t n_bytes) { return allocate_block(current_pe(), n_bytes); }
+  static void operator delete(void* frame, std::size_t n_bytes) { release_block(frame, n_bytes); }
 
-    detail::TaskAccount account;
-    std::coroutine_handle<promise_type> parent;
-    std::exception_ptr error;
+  TaskAccount account;
+  TaskHandle parent;
+  std::exception_ptr error;
+  bool detached = false;
 
-    promise_type();
-    /// A member function of an element: the coroutine is that element's, also if other code calls
-    /// it as an object. (The class of a lambda is not complete yet, and g++ 12 deduces a
-    /// reference.)
-    template <class Object, class... Arguments>
-      requires std::convertible_to<std::remove_reference_t<Object>*, const detail::TessElement*>
-    explicit promise_type(Object& object, Arguments&... /*unused*/) : promise_type() {
-      if (account.context.element != &object) account.belongs_to(object);
-    }
-    Task get_return_object() {
-      return Task(std::coroutine_handle<promise_type>::from_promise(*this));
-    }
-    std::suspend_never initial_suspend() noexcept { return {}; }
-    struct Final {
-      bool await_ready() noexcept { return false; }
-      void await_suspend(std::coroutine_handle<promise_type> self) noexcept;
-      void await_resume() noexcept {}
-    };
-    Final final_suspend() noexcept { return {}; }
-    void return_void() noexcept {}
-    void unhandled_exception() { error = std::current_exception(); }
-    bool detached = false;
+  TaskPromise();
+  /// A member function of an element: the coroutine is that element's, also if other code calls it
+  /// as an object. (The class of a lambda is not complete yet, and g++ 12 deduces a reference.)
+  template <class Object, class... Arguments>
+    requires std::convertible_to<std::remove_reference_t<Object>*, const TessElement*>
+  explicit TaskPromise(Object& object, Arguments&... /*unused*/) : TaskPromise() {
+    if (account.context.element != &object) account.belongs_to(object);
+  }
+  std::suspend_never initial_suspend() noexcept { return {}; }
+  struct Final {
+    bool await_ready() noexcept { return false; }
+    void await_suspend(TaskHandle self) noexcept;
+    void await_resume() noexcept {}
   };
-  using Handle = std::coroutine_handle<promise_type>;
+  Final final_suspend() noexcept { return {}; }
+  void unhandled_exception() { error = std::current_exception(); }
+};
 
-  Task(Task&& other) noexcept : handle_(std::exchange(other.handle_, nullptr)) {}
-  Task(const Task&) = delete;
-  Task& operator=(const Task&) = delete;
-  Task& operator=(Task&&) = delete;
+/// What tasks of all types have: it holds the coroutine.
+class AnyTask {
+ public:
+  AnyTask(AnyTask&& other) noexcept : handle_(std::exchange(other.handle_, {})) {}
+  AnyTask(const AnyTask&) = delete;
+  AnyTask& operator=(const AnyTask&) = delete;
+  AnyTask& operator=(AnyTask&&) = delete;
   /// A waiting task continues by itself, for its element. (The destructor does not throw: g++ 12
   /// fails on a coroutine whose result type throws.)
-  ~Task();
+  ~AnyTask();
 
   // A task may await another: the parent continues, through the queue, when the child is done.
   [[nodiscard]] bool await_ready() const noexcept { return handle_.done(); }
-  void await_suspend(Handle parent);
-  void await_resume() {
+  void await_suspend(TaskHandle parent);
+
+ protected:
+  explicit AnyTask(TaskHandle handle) : handle_(handle) {}
+  /// Throws what the coroutine threw.
+  void rethrow() {
     if (handle_.promise().error)
       std::rethrow_exception(std::exchange(handle_.promise().error, nullptr));
   }
+  [[nodiscard]] void* frame() const { return handle_.address(); }
 
  private:
-  explicit Task(Handle handle) : handle_(handle) {}
-  Handle handle_;
+  TaskHandle handle_;
+};
+
+/// Ends the job: the value of a task was taken before.
+[[noreturn]] void refuse_second_await();
+
+}  // namespace detail
+
+class [[nodiscard]] Task : public detail::AnyTask {
+ public:
+  struct promise_type : detail::TaskPromise {
+    using TaskPromise::TaskPromise;
+    Task get_return_object() {
+      return Task(std::coroutine_handle<promise_type>::from_promise(*this));
+    }
+    void return_void() noexcept {}
+  };
+  using Handle = detail::TaskHandle;
+
+  void await_resume() { rethrow(); }
+
+ private:
+  explicit Task(detail::TaskHandle handle) : AnyTask(handle) {}
+};
+
+/// A task that gives a value:
+///
+/// Sample: tests/samples/task_of.cpp
+///
+///     tess::TaskOf<double> mean_level(tess::ArrayProxy<Lake> lakes) {
+///       tess::Future<double> sum;
+///       lakes.broadcast<&Lake::level>(sum.callback());
+///       const double of_all = co_await sum;
+///       co_return of_all / lakes.size();
+///     }
+///       // …
+///       const double mean = co_await mean_level(lakes);
+///
+/// T can be moved; it needs neither a copy nor a default constructor. The first co_await takes the
+/// value; a second one ends the job. An exception passes as with Task. The coroutine runs when it is
+/// called, so several may be under way at once: call them, then await one after the other, or a
+/// vector of them with when_all() (when.hpp). The value of a task that is not awaited is dropped.
+///
+/// An entry method that is asked may return TaskOf (ask.hpp). One that is sent to may not, and
+/// neither may the function passed to run(), since nothing takes their values.
+template <class T>
+class [[nodiscard]] TaskOf : public detail::AnyTask {
+  static_assert(std::is_object_v<T> && std::is_same_v<T, std::remove_cv_t<T>>,
+                "a task gives a value: TaskOf<T> of a T that is no reference and not const");
+
+ public:
+  struct promise_type : detail::TaskPromise {
+    static_assert(alignof(T) <= 2 * sizeof(void*),
+                  "frames of coroutines are aligned to 16 bytes: let the task give a "
+                  "std::unique_ptr<T>");
+    std::optional<T> value;  // until it is taken
+
+    using TaskPromise::TaskPromise;
+    TaskOf get_return_object() {
+      return TaskOf(std::coroutine_handle<promise_type>::from_promise(*this));
+    }
+    void return_value(T result) { value.emplace(std::move(result)); }
+  };
+
+  T await_resume() {
+    rethrow();
+    std::optional<T>& value =
+        std::coroutine_handle<promise_type>::from_address(frame()).promise().value;
+    if (!value) detail::refuse_second_await();
+    T result = std::move(*value);
+    value.reset();
+    return result;
+  }
+
+ private:
+  explicit TaskOf(detail::TaskHandle handle) : AnyTask(handle) {}
 };
 
 /// For awaitables: suspends a coroutine and records what it waits for. The awaitable resumes it

@@ -375,6 +375,22 @@ inline Task when_all(std::vector<Task> tasks) {
   }
   if (error) std::rethrow_exception(error);
 }
+/// The same of tasks that give values: gives a vector of them.
+template <class T>
+TaskOf<std::vector<T>> when_all(std::vector<TaskOf<T>> tasks) {
+  std::vector<T> values;
+  std::exception_ptr error;
+  for (TaskOf<T>& task : tasks) {
+    try {
+      T value = co_await task;
+      values.push_back(std::move(value));
+    } catch (...) {
+      if (!error) error = std::current_exception();
+    }
+  }
+  if (error) std::rethrow_exception(error);
+  co_return values;
+}
 /// When awaited, gives the first result, as a variant whose index() says which one it is. If
 /// several are there, it is the first in the order of the arguments.
 template <class... A>

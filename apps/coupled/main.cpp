@@ -104,7 +104,7 @@ tess::Task compute(Options options) {
     });
     co_await tess::epoch([&] { overset.broadcast<&Slab::move_to>(to); });
     co_await tess::epoch(exchange);
-    tess::Task one = to_overset.search(), other = to_background.search();
+    auto one = to_overset.search(), other = to_background.search();
     co_await one;
     co_await other;
     co_await to_overset.apply<&Slab::give, &Slab::take>();

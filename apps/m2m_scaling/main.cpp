@@ -34,8 +34,7 @@ int run_case(const Request& request, const tess::SimulatedOptions& machine,
   setup.options.seed = machine.seed.value_or(1);
   setup.options.migration_chance = migration_chance(machine);
   return tess::run(setup, [&]() -> tess::Task {
-    m2m_transfer::Problem problem;
-    co_await m2m_transfer::load(request, &problem);
+    m2m_transfer::Problem problem = co_await m2m_transfer::load(request);
     problem.collects = true;  // the time of it is a column
     co_await m2m_transfer::measure(problem, tess::create_group<m2m_transfer::Gauge>(), progress);
     report = problem.reports.front();

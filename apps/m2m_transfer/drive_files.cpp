@@ -33,8 +33,7 @@ bool moves_file_fields(const DriverOptions& options) {
 Task move_file_fields(const DriverOptions& options, apps::Progress& progress) {
   plot::require_writable("--json", options.json);
   const FileFieldsRequest request = request_of(options);
-  FileFieldsReport report;
-  co_await move_file_fields(request, progress, &report);
+  const FileFieldsReport report = co_await move_file_fields(request, progress);
   if (!options.json.empty()) plot::write_file(options.json, json(report));
   progress.clear();
   print(table(report));

@@ -26,11 +26,12 @@
 namespace m2m_transfer {
 namespace {
 
-Task read(const Request& request, apps::Progress& progress, Problem& problem) {
+TaskOf<Problem> read(const Request& request, apps::Progress& progress) {
   progress.phase("reading");
   const Time start = now();
-  co_await load(request, &problem);
+  Problem problem = co_await load(request);
   for (TransferReport& report : problem.reports) report.seconds.read = tess::seconds(now() - start);
+  co_return problem;
 }
 
 void write_meshes(const std::string& path, const Problem& problem) {
@@ -105,8 +106,7 @@ Task transfer_once(const DriverOptions& options, const plot::FileNames& names,
   plot::require_writable("--out", options.out);
   require_result_format(options.out);
   plot::require_picture("--picture", options.picture);
-  Problem problem;
-  co_await read(request, progress, problem);
+  Problem problem = co_await read(request, progress);
   refuse_to_overwrite(names, options.out, problem);
   const bool in_parts = is_pvtu(options.out);
   if (in_parts) problem.parts_path = options.out;
@@ -135,8 +135,7 @@ Task transfer_all_kinds(const DriverOptions& options, apps::Progress& progress) 
   const std::vector<TransferKind> kinds = kinds_of(options);
   plot::require_writable("--json", options.json);
   request.kind = name_of(kinds.front());
-  Problem read_once;
-  co_await read(request, progress, read_once);
+  const Problem read_once = co_await read(request, progress);
   const auto gauge = create_group<Gauge>();
   std::vector<TransferReport> reports;
   for (const TransferKind kind : kinds) {
@@ -171,8 +170,7 @@ Task run_study(const DriverOptions& options, apps::Progress& progress, bool& fai
   for (Request& request : requests) {
     progress.part(reports.size() + 1, requests.size());
     request.repeat = options.repeat.value_or(3);
-    Problem problem;
-    co_await read(request, progress, problem);
+    Problem problem = co_await read(request, progress);
     if (options.explain) {
       progress.clear();
       print(explain(problem, Output::report));
@@ -203,8 +201,7 @@ Task run_steps_study(const DriverOptions& options, apps::Progress& progress, boo
   plot::make_folder("--plot", folder);
   std::vector<StepsRow> rows;
   for (const Request& one : requests) {
-    Problem problem;
-    co_await read(one, progress, problem);
+    Problem problem = co_await read(one, progress);
     co_await measure_steps(problem, options.repeat.value_or(3), progress, rows);
   }
   progress.clear();

@@ -195,14 +195,14 @@ Task transfer_batch(Run& run, const Batch& batch, std::vector<Field>& values,
     target = scatter(run.target, values, run.request.n_chares, method, target_halo_layers(kind));
   });
   Transfer transfer(source, target, run.options);
-  SearchSummary found;
-  co_await transfer.search(&found);
+  const SearchSummary found = co_await transfer.search();
   if (!report.searched) {
     report.tally = found.tally;
     report.worst = found.worst;
     if (!run.request.weights.empty())
-      co_await collect_weights(transfer, static_cast<std::int64_t>(run.source.n_points()),
-                               static_cast<std::int64_t>(run.target.n_points()), &run.matrix);
+      run.matrix =
+          co_await collect_weights(transfer, static_cast<std::int64_t>(run.source.n_points()),
+                                   static_cast<std::int64_t>(run.target.n_points()));
   }
   report.searched = true;
   co_await transfer.apply();
@@ -234,12 +234,9 @@ void apply_batch(const Run& run, const Batch& batch, std::vector<Field>& values)
 }
 
 /// A search and one application of all fields in elements.
-Task transfer_cell_batch(const Run& run, const Batch& batch, CellOutcome& cells,
-                         FileFieldsReport& report) {
-  co_await transfer_cells(run.source, batch.cells.fields, run.target, run.request.n_chares,
-                          parse_partition_method(run.request.partition), run.options, &cells);
-  report.cell_tally = cells.search.tally;
-  report.has_cells = true;
+TaskOf<CellOutcome> transfer_cell_batch(const Run& run, const Batch& batch) {
+  return transfer_cells(run.source, batch.cells.fields, run.target, run.request.n_chares,
+                        parse_partition_method(run.request.partition), run.options);
 }
 
 void name_fields(const Batch& batch, FileFieldsReport& report) {
@@ -323,9 +320,10 @@ bool is_for_files(const FileFieldsRequest& request) {
   return false;
 }
 
-Task move_file_fields(const FileFieldsRequest& request, apps::Progress& progress,
-                      FileFieldsReport* report) {
+TaskOf<FileFieldsReport> move_file_fields(const FileFieldsRequest& request,
+                                          apps::Progress& progress) {
   check_options(request);
+  FileFieldsReport report;
   progress.phase("reading");
   Run run{request, read_mesh(request.source), read_mesh(request.target)};
   run.options.policy = parse_policy(request.policy);
@@ -334,10 +332,10 @@ Task move_file_fields(const FileFieldsRequest& request, apps::Progress& progress
   run.options.clamp = request.clamp;
   run.options.voxel_size = {request.voxel, request.voxel, request.voxel};
   run.options.on_phase = [&progress](const char* name) { progress.phase(name); };
-  report->source = request.source;
-  report->target = request.target;
-  report->source_elements = {skipped_text(run.source), split_text(run.source)};
-  report->target_elements = {skipped_text(run.target), split_text(run.target)};
+  report.source = request.source;
+  report.target = request.target;
+  report.source_elements = {skipped_text(run.source), split_text(run.source)};
+  report.target_elements = {skipped_text(run.target), split_text(run.target)};
   const SourceFields fields(request, run.source);
   if (is_vtu(request.out) && fields.steps().size() > 1)
     fail(ErrorCode::bad_argument, "--out ", request.out, ": VTU holds one step, and there are ",
@@ -346,20 +344,24 @@ Task move_file_fields(const FileFieldsRequest& request, apps::Progress& progress
     fail(ErrorCode::bad_argument,
          "weights are of values at vertices, and --fields names a field in elements; leave it out, "
          "or --weights and --from-weights");
-  if (!request.from_weights.empty()) read_matrix(run, *report);
+  if (!request.from_weights.empty()) read_matrix(run, report);
   ResultFile out(request.out, run.target);
   for (std::size_t next = 0; next < fields.steps().size();) {
     const Batch batch = read_batch(fields, next);
-    if (report->fields.empty()) name_fields(batch, *report);
+    if (report.fields.empty()) name_fields(batch, report);
     std::vector<Field> values = start_values(batch.vertices.fields, run.target.n_points());
     if (!request.from_weights.empty()) {
       progress.phase("apply");
       apply_batch(run, batch, values);
     } else if (fields.has(FieldPlace::vertices)) {
-      co_await transfer_batch(run, batch, values, *report);
+      co_await transfer_batch(run, batch, values, report);
     }
     CellOutcome cells;
-    if (fields.has(FieldPlace::tets)) co_await transfer_cell_batch(run, batch, cells, *report);
+    if (fields.has(FieldPlace::tets)) {
+      cells = co_await transfer_cell_batch(run, batch);
+      report.cell_tally = cells.search.tally;
+      report.has_cells = true;
+    }
     progress.phase("writing");
     for (std::size_t k = 0; k < batch.steps.size(); ++k) {
       std::vector<Field> result = batch.vertices.of_step(values, k);
@@ -368,17 +370,18 @@ Task move_file_fields(const FileFieldsRequest& request, apps::Progress& progress
       MovedStep step{batch.steps[k], time, 0, 0, result_hash({})};
       add_result(result, step.result_hash, step.n_nan);
       add_result(in_cells, step.result_hash, step.n_nan_cells);
-      report->steps.push_back(step);
+      report.steps.push_back(step);
       if (!run.status.empty()) result.push_back(status_field(run.status, result));
-      if (report->has_cells) in_cells.push_back(status_field(cells.status, in_cells));
+      if (report.has_cells) in_cells.push_back(status_field(cells.status, in_cells));
       out.add(time, result, in_cells);
     }
   }
   out.finish();
   if (!request.weights.empty()) {
     write_weights(request.weights, run.matrix);
-    report->n_weights = run.matrix.rows.weights.size();
+    report.n_weights = run.matrix.rows.weights.size();
   }
+  co_return report;
 }
 
 std::string table(const FileFieldsReport& r) {

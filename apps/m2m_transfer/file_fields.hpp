@@ -62,8 +62,8 @@ struct FileFieldsReport {
 [[nodiscard]] bool is_for_files(const FileFieldsRequest& request);
 
 /// Throws Error with the option, file, field or step that is wrong, before any message is sent.
-Task move_file_fields(const FileFieldsRequest& request, apps::Progress& progress,
-                      FileFieldsReport* report);
+TaskOf<FileFieldsReport> move_file_fields(const FileFieldsRequest& request,
+                                          apps::Progress& progress);
 
 [[nodiscard]] std::string table(const FileFieldsReport& report);
 [[nodiscard]] std::string json(const FileFieldsReport& report);

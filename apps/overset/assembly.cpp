@@ -109,7 +109,7 @@ Problem read_problem(const Request& request) {
   return problem;
 }
 
-tess::Task assemble(const Problem& problem, Assembly& out) {
+tess::TaskOf<Assembly> assemble(const Problem& problem) {
   tess::ArrayProxy<Grid> background, overset;
   co_await tess::epoch([&] {
     background = place(problem, 0);
@@ -123,7 +123,7 @@ tess::Task assemble(const Problem& problem, Assembly& out) {
     overset.broadcast<&Grid::cut>();
   });
   const tess::Time have_holes = tess::now();
-  tess::Task one = to_overset.search(), other = to_background.search();
+  auto one = to_overset.search(), other = to_background.search();
   co_await one;
   co_await other;
   co_await to_overset.apply<&Grid::flags, &Grid::offered>();
@@ -141,6 +141,7 @@ tess::Task assemble(const Problem& problem, Assembly& out) {
     overset.broadcast<&Grid::use>(1);
     background.broadcast<&Grid::use>(2);
   });
+  Assembly out;
   out.cut = tess::seconds(have_holes - start);
   out.search = tess::seconds(have_donors - have_holes);
   out.exchange = tess::seconds(tess::now() - have_donors);
@@ -160,6 +161,7 @@ tess::Task assemble(const Problem& problem, Assembly& out) {
     background.destroy();
     overset.destroy();
   });
+  co_return out;
 }
 
 }  // namespace overset

@@ -45,6 +45,6 @@ struct Assembly {
 };
 
 /// A coroutine of the main program.
-tess::Task assemble(const Problem& problem, Assembly& out);
+tess::TaskOf<Assembly> assemble(const Problem& problem);
 
 }  // namespace overset

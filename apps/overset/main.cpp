@@ -36,8 +36,7 @@ tess::Task run_once(Options options) {
   problem.options = options.problem.options;
   problem.n_parts = options.problem.n_parts > 0 ? options.problem.n_parts : 2 * tess::n_pes();
   if (options.explain) tess::print(explanation(problem));
-  Assembly assembly;
-  co_await assemble(problem, assembly);
+  const Assembly assembly = co_await assemble(problem);
   tess::print(table(options.request, problem, assembly));
   if (!options.json.empty())
     plot::write_file(options.json, json(options.request, problem, assembly));
@@ -55,8 +54,7 @@ tess::Task run_refined(Options options) {
     problem.field = options.problem.field;
     problem.options = options.problem.options;
     problem.n_parts = options.problem.n_parts > 0 ? options.problem.n_parts : 2 * tess::n_pes();
-    Assembly assembly;
-    co_await assemble(problem, assembly);
+    const Assembly assembly = co_await assemble(problem);
     StudyRow row{
         .n = n, .h = 1.0 / n, .seconds = assembly.cut + assembly.search + assembly.exchange};
     double squares = 0;

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "m2m/mesh.hpp"
+#include "m2m/mesh_view.hpp"
 
 #include <cstdint>
 #include <span>
@@ -33,6 +34,11 @@ struct MeshPart {
     ar(points, point_ids, tets, tet_ids, n_owned, n_own_tets, ghosts);
   }
 };
+
+/// A part as couplings see it, valid as long as the part.
+[[nodiscard]] inline MeshView view_of(const MeshPart& part) {
+  return {part.points, part.tets, part.point_ids, part.tet_ids, part.n_owned, part.n_own_tets};
+}
 
 /// Returns the parts 0 to n_parts - 1. `parts`: the part of every tetrahedron. `halo_layers`: how
 /// many layers of tetrahedra of other parts each part also holds; a layer is what shares a vertex.

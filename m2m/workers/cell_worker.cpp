@@ -5,19 +5,12 @@
 #include <utility>
 
 namespace tess::m2m {
-namespace {
-
-MeshView view_of_part(const MeshPart& part) {
-  return {part.points, part.tets, part.point_ids, part.tet_ids, part.n_owned, part.n_own_tets};
-}
-
-}  // namespace
 
 void CellWorker::load(CellLoad load) {
   part_ = std::move(load.part);
   n_components_ = load.n_components;
   values_ = std::move(load.values);
-  const MeshView mesh = view_of_part(part_);
+  const MeshView mesh = view_of(part_);
   if (load.form != CellForm::constant)
     values_ = element_corners(
         mesh, load.elements, values_, n_components_,
@@ -29,7 +22,7 @@ void CellWorker::load(CellLoad load) {
 }
 
 MeshView CellWorker::mesh_view() const {
-  const MeshView mesh = view_of_part(part_);
+  const MeshView mesh = view_of(part_);
   if (!as_points_) return mesh;
   return {centroids_, {}, mesh.tet_ids.first(centroids_.size()), {}, mesh.n_own_tets};
 }

@@ -28,8 +28,7 @@ void Worker::move(const RigidMotion& motion) {
 }
 
 MeshView Worker::mesh_view() const {
-  return {part_.points,  part_.tets,    part_.point_ids,
-          part_.tet_ids, part_.n_owned, part_.n_own_tets};
+  return view_of(part_);
 }
 
 Worker::Pending& Worker::pending_of(CouplingId coupling) {

@@ -215,13 +215,13 @@ struct Chosen {
   Manifest manifest;
   MainPart main;
   std::vector<Reading> readings;
+  std::vector<std::string> damaged;  // what is wrong with files in whose place copies are read
 };
 
 /// Reads a checkpoint and compares it with its manifest. Throws Error that says what is wrong.
-/// `damaged`: what is wrong with files in whose place copies are read.
-Task choose(std::string folder, std::uint64_t number, const Listing& listing, Chosen& chosen,
-            std::vector<std::string>& damaged) {
+TaskOf<Chosen> choose(std::string folder, std::uint64_t number, const Listing& listing) {
   Pe& pe = current_pe();
+  Chosen chosen;
   chosen.folder = folder_of(folder, number);
   std::string error;
   bool opened = false;
@@ -236,7 +236,7 @@ Task choose(std::string folder, std::uint64_t number, const Listing& listing, Ch
     chosen.manifest = std::move(answer.manifest);
     chosen.main = std::move(answer.main);
     if (opened) continue;
-    damaged.push_back(answer.error);
+    chosen.damaged.push_back(answer.error);
     if (error.empty()) error = std::move(answer.error);
   }
   if (!opened) fail(ErrorCode::bad_file, error);
@@ -246,7 +246,8 @@ Task choose(std::string folder, std::uint64_t number, const Listing& listing, Ch
                                   copies ? listing.hosts : one_host(pe.n_pes()), copies};
   AskAll<&verify_here> verified(checkpoint);
   const auto found = co_await verified;
-  chosen.readings = plan_reading(checkpoint, found, damaged);
+  chosen.readings = plan_reading(checkpoint, found, chosen.damaged);
+  co_return chosen;
 }
 
 /// Throws Error if this program cannot restore the checkpoint on this many PEs.
@@ -297,7 +298,7 @@ std::string latest_checkpoint(const std::string& folder) {
   return {};
 }
 
-Task read_checkpoint(std::string folder, std::string state_type, std::vector<std::byte>& state) {
+TaskOf<std::vector<std::byte>> read_checkpoint(std::string folder, std::string state_type) {
   require_main("restart()");
   Pe& pe = current_pe();
   if (pe.has_futures())
@@ -314,27 +315,23 @@ Task read_checkpoint(std::string folder, std::string state_type, std::vector<std
       fail(ErrorCode::bad_argument, "restart() comes first, but this run has already made ",
            names.front());
 
-  Listing listing;
-  co_await list_all(folder, listing);
+  const Listing listing = co_await list_all(folder);
   const std::vector<std::uint64_t>& numbers = listing.numbers;
   if (numbers.empty())
     fail(ErrorCode::bad_file, folder, ": no checkpoint is in this folder; start without a restart");
   Runtime::OwnCheckpoints own{.last = numbers.front()};
   std::optional<Chosen> chosen;
   for (std::size_t i = 0; i < numbers.size() && !chosen; ++i) {
-    Chosen candidate;
-    std::vector<std::string> damaged;
     std::string error;
     try {
-      co_await choose(folder, numbers[i], listing, candidate, damaged);
+      chosen = co_await choose(folder, numbers[i], listing);
     } catch (const Error& wrong) {
       error = wrong.what();
     }
-    if (error.empty()) {
-      for (const std::string& one : damaged)
+    if (chosen) {
+      for (const std::string& one : chosen->damaged)
         pe.runtime().error_line(
             text("tessera: a file of a checkpoint is refused: ", one, "; its copy is used"));
-      chosen = std::move(candidate);
       continue;
     }
     own.refused.push_back(numbers[i]);
@@ -360,9 +357,9 @@ Task read_checkpoint(std::string folder, std::string state_type, std::vector<std
   AskAll<&thaw_here> thawed(Thaw{});
   (void)co_await thawed;
   pe.runtime().made_before_restart() = std::move(chosen->main.numbers);
-  state = std::move(chosen->main.state);
   pe.runtime().own_checkpoints(canonical(folder)) = std::move(own);
   pe.runtime().checkpoint_run() = chosen->manifest.run;
+  co_return std::move(chosen->main.state);
 }
 
 void refuse_state(std::string_view state_type, const Error& error) {

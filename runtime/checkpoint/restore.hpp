@@ -22,9 +22,9 @@ namespace tess::detail {
 /// The folder of the latest checkpoint that was finished; empty if there is none.
 [[nodiscard]] std::string latest_checkpoint(const std::string& folder);
 
-/// Writes the bytes of the main coroutine's state to `state`, which outlives the task.
-[[nodiscard]] Task read_checkpoint(std::string folder, std::string state_type,
-                                   std::vector<std::byte>& state);
+/// The bytes of the main coroutine's state.
+[[nodiscard]] TaskOf<std::vector<std::byte>> read_checkpoint(std::string folder,
+                                                             std::string state_type);
 
 /// Throws the error of a state object that was read, with the remedy.
 [[noreturn]] void refuse_state(std::string_view state_type, const Error& error);

@@ -235,33 +235,35 @@ std::uint64_t run_here(Pe& /*pe*/, const FolderQuestion& question) {
 }
 
 /// The run that wrote a checkpoint; 0 if no host has a manifest that can be read.
-Task run_of(std::string folder, const Listing& listing, std::uint64_t number, std::uint64_t& run) {
-  run = 0;
-  for (std::size_t host = 0; host < listing.complete_on.size() && run == 0; ++host) {
+TaskOf<std::uint64_t> run_of(std::string folder, const Listing& listing, std::uint64_t number) {
+  for (std::size_t host = 0; host < listing.complete_on.size(); ++host) {
     if (!listing.complete_on[host].contains(number)) continue;
     const PeId there = listing.hosts.first.at(host);
     AskAll<&run_here> asked(FolderQuestion{folder_of(folder, number)}, {there});
     const std::vector<std::uint64_t> runs = co_await asked;
-    run = runs[static_cast<std::size_t>(there.value)];
+    const std::uint64_t run = runs[static_cast<std::size_t>(there.value)];
+    if (run != 0) co_return run;
   }
+  co_return 0;
 }
 
 /// After a restart from another folder: which checkpoints here the run wrote before. Those whose
 /// manifest cannot be read are passed over, as a restart does.
-Task find_own(std::string folder, const Listing& listing, std::uint64_t run,
-              Runtime::OwnCheckpoints& ours) {
+TaskOf<Runtime::OwnCheckpoints> find_own(std::string folder, const Listing& listing,
+                                         std::uint64_t run) {
+  Runtime::OwnCheckpoints ours;
   std::vector<std::uint64_t> unreadable;
   for (const std::uint64_t number : listing.numbers) {
     if (!listing.is_complete(number)) continue;
-    std::uint64_t found = 0;
-    co_await run_of(folder, listing, number, found);
+    const std::uint64_t found = co_await run_of(folder, listing, number);
     if (found == run) {
       ours.last = listing.numbers.front();
       ours.refused = unreadable;
     }
-    if (found != 0) co_return;
+    if (found != 0) break;
     unreadable.push_back(number);
   }
+  co_return ours;
 }
 
 /// Throws Error if the folder has a checkpoint that this run neither wrote nor found at its
@@ -373,14 +375,14 @@ Task save_all(std::string folder, MainPart main, std::function<std::vector<std::
     // Hosts are told apart by their folders, so these must be there.
     AskAll<&make_here> made_all(FolderQuestion{folder}, first_of_processes(pe));
     fail_for_first(co_await made_all);
-    co_await list_all(folder, listing);
+    listing = co_await list_all(folder);
   } else {
     listing = list_shared(folder, pe.n_pes());
   }
   Runtime::OwnCheckpoints& ours = pe.runtime().own_checkpoints(canonical(folder));
   std::uint64_t& run = pe.runtime().checkpoint_run();
   if (run == 0) run = new_run();
-  if (ours.last == 0) co_await find_own(folder, listing, run, ours);
+  if (ours.last == 0) ours = co_await find_own(folder, listing, run);
   require_own(folder, listing, ours);
   Manifest manifest = next_manifest(pe, listing, options);
   const std::string here = folder_of(folder, manifest.number);
@@ -415,7 +417,7 @@ Task save_all(std::string folder, MainPart main, std::function<std::vector<std::
 
 }  // namespace
 
-Task list_all(std::string folder, Listing& listing) {
+TaskOf<Listing> list_all(std::string folder) {
   Pe& pe = current_pe();
   const std::vector<PeId> leaders = first_of_processes(pe);
   AskAll<&look_here> looked(FolderQuestion{std::move(folder)}, leaders);
@@ -423,7 +425,7 @@ Task list_all(std::string folder, Listing& listing) {
   std::vector<SeenFolder> seen;
   seen.reserve(leaders.size());
   for (const PeId leader : leaders) seen.push_back(answers[static_cast<std::size_t>(leader.value)]);
-  listing = list_hosts(seen, pe.machine().pes_per_process());
+  co_return list_hosts(seen, pe.machine().pes_per_process());
 }
 
 void require_main(const std::string& what) {

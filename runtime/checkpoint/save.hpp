@@ -29,7 +29,7 @@ struct Listing;
                                     CheckpointOptions options);
 
 /// Lists the checkpoints in a folder as all processes see it.
-[[nodiscard]] Task list_all(std::string folder, Listing& listing);
+[[nodiscard]] TaskOf<Listing> list_all(std::string folder);
 
 /// Ends with an error unless the main coroutine calls `what`.
 void require_main(const std::string& what);

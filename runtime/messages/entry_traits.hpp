@@ -12,6 +12,8 @@
 namespace tess {
 
 class Task;
+template <class T>
+class TaskOf;
 
 template <class... Parameters>
 struct Overload {
@@ -53,6 +55,20 @@ struct MemberTraits<R (C::*)(P...) const noexcept> : MemberTraits<R (C::*)(P...)
 
 template <auto F>
 using EntryTraits = MemberTraits<decltype(F)>;
+
+/// What a function of this result type gives in the end: void for Task, T for TaskOf<T>.
+template <class Result>
+struct GivenBy : std::type_identity<Result> {
+  static constexpr bool is_task = false;
+};
+template <>
+struct GivenBy<Task> : std::type_identity<void> {
+  static constexpr bool is_task = true;
+};
+template <class T>
+struct GivenBy<TaskOf<T>> : std::type_identity<T> {
+  static constexpr bool is_task = true;
+};
 
 /// True if the type To cannot hold every number of type From: 3.7 as an integer, a double as a
 /// float, a 64-bit number as one of 32 bits. (Signs are checked when the number is sent.)
@@ -109,7 +125,7 @@ consteval bool check_call() {
     static_assert(std::is_default_constructible_v<typename Traits::Arguments>,
                   "the arguments of an entry method need default constructors: where they arrive "
                   "they are made empty and then read");
-    static_assert(!std::is_same_v<typename Traits::Result, Task> || Traits::by_value,
+    static_assert(!GivenBy<typename Traits::Result>::is_task || Traits::by_value,
                   "a coroutine takes its arguments by value: the message is gone once it waits");
     if constexpr (sizeof...(Args) == Traits::n_arguments) {
       static_assert(std::is_constructible_v<typename Traits::Arguments, Args...>,
@@ -148,11 +164,10 @@ consteval bool check_broadcast() {
 template <class C, auto F, class... Args>
 consteval bool check_ask() {
   if constexpr (EntryTraits<F>::is_member) {
-    using Result = typename EntryTraits<F>::Result;
+    using Result = typename GivenBy<typename EntryTraits<F>::Result>::type;
     static_assert(std::is_void_v<Result> || std::is_same_v<Result, std::decay_t<Result>>,
                   "a reply is a value: a function that is asked returns no reference");
-    static_assert(std::is_void_v<Result> || std::is_same_v<Result, Task> ||
-                      std::is_default_constructible_v<Result>,
+    static_assert(std::is_void_v<Result> || std::is_default_constructible_v<Result>,
                   "a reply needs a default constructor: where it arrives it is made empty and then "
                   "read");
   }

@@ -6,6 +6,6 @@ class Fluid : public tess::Chare<Fluid, std::string>, public tess::m2m::Piece<Fl
   tess::m2m::MeshView mesh_view() const { return {}; }
 };
 
-tess::Task misuse(tess::m2m::Coupling<Fluid, Fluid> coupling) {
+tess::TaskOf<tess::m2m::SearchSummary> misuse(tess::m2m::Coupling<Fluid, Fluid> coupling) {
   return coupling.search();
 }

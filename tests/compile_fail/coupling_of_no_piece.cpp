@@ -4,6 +4,6 @@
 
 class Fluid : public tess::Chare<Fluid>, public tess::m2m::Piece<Fluid> {};
 
-tess::Task misuse(tess::m2m::Coupling<Fluid, Fluid> coupling) {
+tess::TaskOf<tess::m2m::SearchSummary> misuse(tess::m2m::Coupling<Fluid, Fluid> coupling) {
   return coupling.search();
 }

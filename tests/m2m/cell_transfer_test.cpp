@@ -69,11 +69,12 @@ struct CellCase {
 };
 CellOutcome moved_cells(const CellCase& c, std::uint64_t seed, const std::vector<Field>& fields) {
   const test::Machine machine{.pes = 1 + static_cast<int>(seed % 4), .seed = seed};
+  const TransferOptions options{.policy = c.policy, .kind = c.kind};
   CellOutcome outcome;
   machine
       .run([&]() -> Task {
-        return transfer_cells(*c.source, fields, *c.target, c.n_parts, PartitionMethod::curve,
-                              {.policy = c.policy, .kind = c.kind}, &outcome);
+        outcome = co_await transfer_cells(*c.source, fields, *c.target, c.n_parts,
+                                          PartitionMethod::curve, options);
       })
       .require_success();
   return outcome;
@@ -88,10 +89,10 @@ bool is_exact(TransferKind kind) {
 
 Task attempt_cells(const CellCase& c, std::string* message) {
   const std::vector<Field> fields{cell_field(*c.source)};
-  CellOutcome outcome;
+  const TransferOptions options{.policy = c.policy, .kind = c.kind};
   try {
     co_await transfer_cells(*c.source, fields, *c.target, c.n_parts, PartitionMethod::curve,
-                            {.policy = c.policy, .kind = c.kind}, &outcome);
+                            options);
   } catch (const Error& error) {
     *message = error.what();
   }
@@ -100,10 +101,9 @@ Task attempt_cells(const CellCase& c, std::string* message) {
 Task refused_cells(const TetMesh& mesh, TransferOptions options, std::string* message,
                    std::size_t* n_left) {
   const std::vector<Field> fields{cell_field(mesh)};
-  CellOutcome outcome;
   const std::size_t before = n_collections();
   try {
-    co_await transfer_cells(mesh, fields, mesh, 2, PartitionMethod::curve, options, &outcome);
+    co_await transfer_cells(mesh, fields, mesh, 2, PartitionMethod::curve, options);
   } catch (const Error& error) {
     *message = error.what();
   }

@@ -63,8 +63,9 @@ Task transfer_with_weights(const Weighed& c, Moved* result) {
   options.kind = c.kind;
   Transfer transfer(source, target, options);
   co_await transfer.search();
-  co_await collect_weights(transfer, static_cast<std::int64_t>(c.source.n_points()),
-                           static_cast<std::int64_t>(c.target.n_points()), &result->weights);
+  result->weights =
+      co_await collect_weights(transfer, static_cast<std::int64_t>(c.source.n_points()),
+                               static_cast<std::int64_t>(c.target.n_points()));
   co_await transfer.apply();
   Future<Outcome> outcome;
   target.workers.broadcast<&Worker::gather>(outcome.callback());

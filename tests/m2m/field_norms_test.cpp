@@ -6,6 +6,7 @@
 #include "runtime/core/hash.hpp"
 #include "runtime/machine/threads.hpp"
 #include "runtime/testing.hpp"
+#include "tests/m2m/error_norms.hpp"
 #include "tests/support/catch.hpp"
 
 #include <algorithm>
@@ -15,6 +16,7 @@
 
 using namespace tess;
 using namespace tess::m2m;
+using tess::test::error_norms;
 
 namespace {
 
@@ -54,20 +56,18 @@ Task measure(Layout layout, std::vector<double> second, std::vector<FormulaField
     to = scatter(b, {{"p", 1, start}, {"q", 1, start}}, layout.n_parts, layout.method, layout.halo);
   });
   const TransferOptions options;
-  co_await transfer(from, to, options, nullptr);
+  co_await transfer(from, to, options);
   NormsRequest request{"the target", std::move(truth), {{.translation = {-0.1, 0, 0}}}};
   try {
-    co_await measure_norms(to, request, &answer.norms);
+    answer.norms = co_await measure_norms(to, request);
   } catch (const Error& error) {
     answer.refusal = error.what();
   }
   const auto n = static_cast<GlobalId>(b.n_points());
   const std::vector<std::vector<FieldColumns>> columns{
       scalar_columns(2), {{0, 1}}, {{1, 1}}, {{0, 2}}};
-  for (const std::vector<FieldColumns>& some : columns) {
-    answer.hashes.emplace_back();
-    co_await hash_values(to, n, some, &answer.hashes.back());
-  }
+  for (const std::vector<FieldColumns>& some : columns)
+    answer.hashes.push_back(co_await hash_values(to, n, some));
   Future<Outcome> outcome;
   to.workers.broadcast<&Worker::gather>(outcome.callback());
   const Outcome all = co_await outcome;

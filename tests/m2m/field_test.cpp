@@ -2,6 +2,7 @@
 
 #include "m2m/fields/expression.hpp"
 #include "m2m/kuhn.hpp"
+#include "tests/m2m/error_norms.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/scratch.hpp"
 
@@ -10,6 +11,7 @@
 #include <limits>
 
 using namespace tess::m2m;
+using tess::test::error_norms;
 using tess::test::message_of;
 
 TEST_CASE("an expression has the value of the same expression in C++", "[m2m][field]") {

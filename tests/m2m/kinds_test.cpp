@@ -4,6 +4,7 @@
 #include "m2m/transfer.hpp"
 #include "runtime/testing.hpp"
 #include "tests/m2m/element_meshes.hpp"
+#include "tests/m2m/error_norms.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/n_seeds.hpp"
 #include "tests/support/scratch.hpp"
@@ -15,6 +16,7 @@
 
 using namespace tess;
 using namespace tess::m2m;
+using tess::test::error_norms;
 
 namespace {
 
@@ -80,7 +82,8 @@ Task transfer_linear(const TetMesh& from, const TetMesh& to, KindCut cut,
     target = scatter(to, {{"f", 1, std::vector<double>(to.n_points())}}, cut.n_parts,
                      PartitionMethod::curve, target_halo_layers(cut.kind));
   });
-  co_await transfer(source, target, {.policy = cut.policy, .kind = cut.kind}, &summary);
+  const TransferOptions options{.policy = cut.policy, .kind = cut.kind};
+  summary = co_await transfer(source, target, options);
   Future<Outcome> outcome;
   target.workers.broadcast<&Worker::gather>(outcome.callback());
   const Outcome all = co_await outcome;
@@ -95,7 +98,7 @@ std::vector<double> linear_result(const TetMesh& from, const TetMesh& to, KindCu
   TransferSummary summary;
   machine.run([&]() -> Task { return transfer_linear(from, to, cut, values, summary); })
       .require_success();
-  if (tally != nullptr) *tally = summary.tally;
+  if (tally != nullptr) *tally = summary.search.tally;
   return values;
 }
 

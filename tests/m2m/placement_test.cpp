@@ -73,9 +73,9 @@ Task compare(const Case& c, std::string* difference) {
       [&] { whole = scatter(c.mesh, fields, c.n_parts, PartitionMethod::curve, c.halo_layers); });
   PlacedMesh placed;
   if (c.by_name)
-    co_await place(c.mesh.name, options, &placed);
+    placed = co_await place(c.mesh.name, options);
   else
-    co_await place(&c.mesh, options, &placed);
+    placed = co_await place(&c.mesh, options);
   Contents want, got;
   co_await inspect(whole, &want);
   co_await inspect(placed.mesh, &got);
@@ -130,14 +130,9 @@ TetMesh odd_mesh() {
   return mesh;
 }
 
-Task place_once(const TetMesh* mesh, PlaceOptions options) {
-  PlacedMesh placed;
-  co_await place(mesh, options, &placed);
-}
-
 Task message_of_place(const TetMesh* mesh, PlaceOptions options, std::string* message) {
   try {
-    co_await place_once(mesh, options);
+    co_await place(mesh, options);
   } catch (const Error& error) {
     *message = error.what();
   }
@@ -454,7 +449,7 @@ MeshSurvey survey_on(int n_pes, const std::string& name,
                      const std::vector<FormulaField>& fields = {}) {
   Setup setup{make_threads_machine(n_pes), {}};
   MeshSurvey out;
-  REQUIRE(run(setup, [&]() -> Task { return survey(name, fields, &out); }) == 0);
+  REQUIRE(run(setup, [&]() -> Task { out = co_await survey(name, fields); }) == 0);
   return out;
 }
 
@@ -499,9 +494,8 @@ TEST_CASE("a survey refuses what a reader, validate() and sample() refuse", "[m2
     std::string message;
     Setup setup{make_threads_machine(3), {}};
     const auto survey_it = [&]() -> Task {
-      MeshSurvey out;
       try {
-        co_await survey(name, fields, &out);
+        co_await survey(name, fields);
       } catch (const Error& error) {
         message = error.what();
       }

@@ -1,6 +1,7 @@
 #include "m2m/interpolate/locate.hpp"
 #include "m2m/kuhn.hpp"
 #include "m2m/read_mesh.hpp"
+#include "tests/m2m/error_norms.hpp"
 #include "tests/m2m/non_conforming.hpp"
 #include "tests/m2m/serial_transfer.hpp"
 #include "tests/support/catch.hpp"
@@ -11,6 +12,7 @@
 #include <cmath>
 
 using namespace tess::m2m;
+using tess::test::error_norms;
 using tess::test::made_mesh;
 using tess::test::message_of;
 using tess::test::SerialReport;

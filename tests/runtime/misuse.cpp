@@ -437,6 +437,15 @@ tess::Task task_awaited_at_once() {
   co_await wait_for(task);
 }
 
+tess::TaskOf<std::string> make_news() {
+  co_return "news";
+}
+tess::Task value_awaited_twice() {
+  auto news = make_news();
+  (void)co_await news;
+  (void)co_await news;
+}
+
 tess::Task ask_awaited_twice() {
   const auto all = tess::create<Block>(tess::range(3));
   auto news = all[{1}].ask<&Block::news>();
@@ -548,6 +557,7 @@ const std::map<std::string, std::function<void()>> misuses{
     {"empty_group_local", [] { tess::GroupProxy<Member>().local().nothing(); }},
     {"future_awaited_twice", [] { const tess::Task task = future_awaited_twice(); }},
     {"task_awaited_at_once", [] { const tess::Task task = task_awaited_at_once(); }},
+    {"value_awaited_twice", [] { const tess::Task task = value_awaited_twice(); }},
     {"ask_awaited_twice", [] { const tess::Task task = ask_awaited_twice(); }},
     {"future_after_move", [] { const tess::Task task = future_after_move(); }},
     {"future_given_two", [] { const tess::Task task = future_given_two(); }},

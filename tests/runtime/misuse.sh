@@ -73,6 +73,7 @@ here empty_group "a broadcast of Member::nothing to an empty proxy"
 here empty_group_local "a use of an empty proxy: assign what create() returned to it first"
 everywhere future_awaited_twice "a future of .*string.* is awaited again: the first co_await took its result"
 here task_awaited_at_once "two coroutines await one task"
+here value_awaited_twice "a task is awaited again: the first co_await took its result"
 everywhere ask_awaited_twice "the reply of Block\[1\].news is awaited again: the first co_await took it"
 here future_given_two "a future of int was given two results: it takes one"
 # Between processes the element is made anew, with a future of its own.

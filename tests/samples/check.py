@@ -8,7 +8,7 @@ indent of at least four columns:
 
     // Sample: tests/samples/transfer.cpp
     //
-    //     co_await transfer(source, target, options, &summary);
+    //     const TransferSummary summary = co_await transfer(source, target, options);
 
 In an .md file, the line "<!-- Sample: PATH -->" precedes a fenced block. The lines of the sample must
 stand in PATH in one piece; the indent of the whole piece may differ. A line "// …" in a sample leaves

@@ -165,9 +165,8 @@ Task program(Findings& found) {
   solid.broadcast<&Solid::count>(outside.callback());
   found.outside = co_await outside;
 
-  SearchSummary summary;
   co_await epoch([&] { solid.broadcast<&Solid::move>(-0.5); });
-  co_await to_solid.search(&summary);
+  const SearchSummary summary = co_await to_solid.search();
   found.tally = summary.tally;
   co_await to_solid.apply<&Fluid::temperature, &Solid::heat>();
   Future<double> worst_moved;

@@ -37,8 +37,7 @@ Task one_transfer(const Scene& scene, double& error, TransferSummary& result) {
   co_await epoch(place);
 
   const TransferOptions options{.policy = Nearest{}};
-  TransferSummary summary;
-  co_await transfer(source, target, options, &summary);
+  const TransferSummary summary = co_await transfer(source, target, options);
 
   Future<Outcome> outcome;
   target.workers.broadcast<&Worker::gather>(outcome.callback());
@@ -73,8 +72,8 @@ Task two_transfers(const Scene& scene, double& error) {
   };
   co_await epoch(place);
   const TransferOptions options{.policy = Keep{}};
-  Task first = transfer(a, b, options, nullptr);
-  Task second = transfer(a, c, options, nullptr);
+  auto first = transfer(a, b, options);
+  auto second = transfer(a, c, options);
   co_await first;
   co_await second;
   for (const DistributedMesh& mesh : {b, c}) {
@@ -94,7 +93,7 @@ TEST_CASE("the samples of m2m/transfer.hpp move a linear field exactly", "[m2m][
   Setup one{make_threads_machine(2), {}};
   REQUIRE(run(one, [&]() -> Task { return one_transfer(scene, error, summary); }) == 0);
   CHECK(error < 1e-14);
-  CHECK(summary.tally.counts[static_cast<std::size_t>(Status::outside)] == 0);
+  CHECK(summary.search.tally.counts[static_cast<std::size_t>(Status::outside)] == 0);
 
   double repeated = 1;
   Setup ten{make_threads_machine(2), {}};

@@ -59,7 +59,7 @@ Task read_one(Problem& problem, std::size_t m) {
     std::vector<FormulaField> fields;
     for (std::size_t f = 0; f < problem.formulas.size(); ++f)
       fields.push_back({problem.field_names[f], problem.domain});
-    co_await survey(mesh.name, std::move(fields), &mesh.survey);
+    mesh.survey = co_await survey(mesh.name, std::move(fields));
     co_return;
   }
   mesh.mesh = read_mesh(mesh.name);
@@ -130,8 +130,8 @@ void check_kind(TransferKind kind, const Request& request) {
     refuse("--policy nearest", "give keep or value:V, or another --kind");
 }
 
-Task load(Request request, Problem* out) {
-  Problem& problem = *out;
+TaskOf<Problem> load(Request request) {
+  Problem problem;
   problem.policy = parse_policy(request.policy);
   problem.partition = parse_partition_method(request.partition);
   problem.kind = parse_transfer_kind(request.kind);
@@ -156,6 +156,7 @@ Task load(Request request, Problem* out) {
   problem.voxel = {request.voxel, request.voxel, request.voxel};
   for (const Pair& pair : problem.pairs)
     problem.reports.push_back(report_of(problem, pair, request));
+  co_return problem;
 }
 
 void bring_targets(Problem& problem) {

@@ -85,8 +85,8 @@ struct Problem {
 void check_kind(TransferKind kind, const Request& request);
 
 /// Reads and checks the meshes by all PEs together where they can be read in ranges, and evaluates
-/// the fields. Throws Error with the option or file that is wrong. `problem` must outlive the task.
-Task load(Request request, Problem* problem);
+/// the fields. Throws Error with the option or file that is wrong.
+TaskOf<Problem> load(Request request);
 
 /// After a run that collects its results: reads the meshes that pairs write, unless they are here,
 /// and moves them as the run did.

@@ -26,9 +26,8 @@ DriftRow row_of(const std::string& field, const FieldNorms& norms) {
 /// All counts of round trips with one kind.
 Task run_kind(Problem& problem, const std::vector<std::int32_t>& trips, apps::Progress& progress,
               Drift& drift) {
-  std::vector<DistributedMesh> meshes;
   progress.phase("partition");
-  co_await place(problem, problem.kind, problem.chares(), meshes);
+  std::vector<DistributedMesh> meshes = co_await place(problem, problem.kind, problem.chares());
   GraphRun graph(problem, meshes, progress);
   co_await graph.search();
   const RunMesh& start = problem.meshes.front();
@@ -44,12 +43,11 @@ Task run_kind(Problem& problem, const std::vector<std::int32_t>& trips, apps::Pr
     co_await graph.steps();
     elapsed += seconds_since(begin);
     done = count;
-    std::vector<FieldNorms> norms;
-    co_await measure_norms(meshes.front(), request, &norms);
+    const std::vector<FieldNorms> norms = co_await measure_norms(meshes.front(), request);
     for (std::size_t f = 0; f < norms.size(); ++f) {
       DriftRow row = row_of(problem.field_names[f], norms[f]);
       const std::vector<FieldColumns> column{{f, 1}};
-      co_await hash_values(meshes.front(), n_points, column, &row.hash);
+      row.hash = co_await hash_values(meshes.front(), n_points, column);
       row.kind = name_of(problem.kind);
       row.trips = count;
       drift.rows.push_back(std::move(row));
@@ -78,8 +76,7 @@ Task measure_drift(Request request, const std::vector<TransferKind>& kinds,
                    const std::vector<std::int32_t>& trips, apps::Progress& progress, Drift& drift) {
   request.pairs = "A:B,B:A";
   progress.phase("reading");
-  Problem problem;
-  co_await load(request, &problem);
+  Problem problem = co_await load(request);
   drift.source = request.source;
   drift.target = request.target;
   drift.machine = machine().describe();

@@ -42,8 +42,7 @@ Task collect(Problem& problem, const std::vector<DistributedMesh>& meshes, const
     if (!is_written(m, problem.pairs)) continue;
     RunMesh& mesh = problem.meshes[m];
     const Time begin = now();
-    Gathered result;
-    co_await gather(meshes[m], static_cast<std::size_t>(mesh.survey.n_points), result);
+    Gathered result = co_await gather(meshes[m], static_cast<std::size_t>(mesh.survey.n_points));
     const double took = seconds_since(begin);
     for (std::size_t p = 0; p < problem.pairs.size(); ++p)
       if (problem.pairs[p].target == m) problem.reports[p].seconds.gather = took;
@@ -63,8 +62,7 @@ Task measure(Problem& problem, GroupProxy<Gauge> gauge, apps::Progress& progress
 
   progress.phase("partition");
   const Time start = now();
-  std::vector<DistributedMesh> meshes;
-  co_await place(problem, problem.kind, problem.chares(), meshes);
+  std::vector<DistributedMesh> meshes = co_await place(problem, problem.kind, problem.chares());
   const double setup = seconds_since(start);
   std::optional<GraphRun> graph;
   for (std::int32_t round = 0; round < problem.repeat; ++round) {

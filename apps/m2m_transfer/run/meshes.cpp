@@ -12,40 +12,42 @@ namespace m2m_transfer {
 namespace {
 
 /// All PEs read and cut together, and evaluate the fields where the points are.
-Task place_together(const Problem& problem, TransferKind kind, std::int32_t n_parts,
-                    std::vector<DistributedMesh>& meshes) {
-  std::vector<PlacedMesh> placed(problem.meshes.size());
-  std::vector<Task> tasks;
+TaskOf<std::vector<DistributedMesh>> place_together(const Problem& problem, TransferKind kind,
+                                                    std::int32_t n_parts) {
+  std::vector<TaskOf<PlacedMesh>> tasks;
   for (std::size_t m = 0; m < problem.meshes.size(); ++m) {
     PlaceOptions options{n_parts, halo_for(kind, m, problem.pairs), {}};
     for (const std::string& name : problem.field_names)
       options.fields.push_back({needs_values(m, problem.pairs) ? name : "0", problem.domain});
     const RunMesh& mesh = problem.meshes[m];
-    tasks.push_back(mesh.mesh ? tess::m2m::place(&*mesh.mesh, options, &placed[m])
-                              : tess::m2m::place(mesh.name, options, &placed[m]));
+    tasks.push_back(mesh.mesh ? tess::m2m::place(&*mesh.mesh, options)
+                              : tess::m2m::place(mesh.name, options));
   }
-  co_await tess::when_all(std::move(tasks));
+  const std::vector<PlacedMesh> placed = co_await tess::when_all(std::move(tasks));
+  std::vector<DistributedMesh> meshes;
   for (const PlacedMesh& mesh : placed) meshes.push_back(mesh.mesh);
+  co_return meshes;
 }
 
 }  // namespace
 
-Task place(const Problem& problem, TransferKind kind, std::int32_t n_parts,
-           std::vector<DistributedMesh>& meshes) {
-  if (problem.partition == PartitionMethod::curve) {
-    co_await place_together(problem, kind, n_parts, meshes);
-    co_return;
-  }
+TaskOf<std::vector<DistributedMesh>> place(const Problem& problem, TransferKind kind,
+                                           std::int32_t n_parts) {
+  if (problem.partition == PartitionMethod::curve)
+    co_return co_await place_together(problem, kind, n_parts);
+  std::vector<DistributedMesh> meshes;
   co_await epoch([&] {
     for (std::size_t m = 0; m < problem.meshes.size(); ++m)
       meshes.push_back(scatter(*problem.meshes[m].mesh, problem.meshes[m].fields, n_parts,
                                problem.partition, halo_for(kind, m, problem.pairs)));
   });
+  co_return meshes;
 }
 
-Task gather(const DistributedMesh& mesh, std::size_t n_vertices, Gathered& out) {
+TaskOf<Gathered> gather(const DistributedMesh& mesh, std::size_t n_vertices) {
   const Outcome all = co_await mesh.workers.reduce<&Worker::gather>();
   const std::size_t n_fields = mesh.n_components;
+  Gathered out;
   out.status.assign(n_vertices, Status::outside);
   out.values.assign(n_fields, std::vector<double>(n_vertices));
   for (std::size_t i = 0; i < all.points.size(); ++i) {
@@ -53,6 +55,7 @@ Task gather(const DistributedMesh& mesh, std::size_t n_vertices, Gathered& out) 
     out.status[vertex] = all.status[i];
     for (std::size_t f = 0; f < n_fields; ++f) out.values[f][vertex] = all.values[i * n_fields + f];
   }
+  co_return out;
 }
 
 Task destroy(std::vector<DistributedMesh>& meshes) {

@@ -17,11 +17,11 @@ struct Gathered {
 };
 
 /// Distributes the meshes; each gets the halo that the kind needs.
-Task place(const Problem& problem, TransferKind kind, std::int32_t n_parts,
-           std::vector<DistributedMesh>& meshes);
+TaskOf<std::vector<DistributedMesh>> place(const Problem& problem, TransferKind kind,
+                                           std::int32_t n_parts);
 
 /// Gathers a mesh of so many vertices on this PE. All fields have one component.
-Task gather(const DistributedMesh& mesh, std::size_t n_vertices, Gathered& out);
+TaskOf<Gathered> gather(const DistributedMesh& mesh, std::size_t n_vertices);
 
 Task destroy(std::vector<DistributedMesh>& meshes);
 

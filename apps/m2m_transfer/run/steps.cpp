@@ -7,10 +7,6 @@
 namespace m2m_transfer {
 namespace {
 
-Task search_one(Transfer& transfer, SearchSummary& summary) {
-  co_await transfer.search(&summary);
-}
-
 void keep_least(double& least, double value) {
   least = least == 0 ? value : std::min(least, value);
 }
@@ -36,11 +32,10 @@ GraphRun::GraphRun(Problem& problem, std::vector<DistributedMesh>& meshes, apps:
 }
 
 Task GraphRun::search() {
-  std::vector<Task> tasks;
+  std::vector<TaskOf<SearchSummary>> tasks;
   tasks.reserve(transfers_.size());
-  for (std::size_t p = 0; p < transfers_.size(); ++p)
-    tasks.push_back(search_one(transfers_[p], found_[p]));
-  co_await tess::when_all(std::move(tasks));
+  for (Transfer& transfer : transfers_) tasks.push_back(transfer.search());
+  found_ = co_await tess::when_all(std::move(tasks));
   for (std::size_t p = 0; p < transfers_.size(); ++p) {
     seconds_[p].broad = found_[p].broad;
     seconds_[p].narrow = found_[p].narrow;
@@ -78,18 +73,20 @@ Task GraphRun::move_meshes() {
 }
 
 Task GraphRun::search_again() {
-  std::vector<Task> tasks;
+  std::vector<TaskOf<SearchSummary>> tasks;
   std::vector<std::size_t> pairs;
   tasks.reserve(transfers_.size());
   for (std::size_t p = 0; p < transfers_.size(); ++p) {
     const Pair& pair = problem_.pairs[p];
     if (problem_.source_of(pair).motions.empty() && problem_.target_of(pair).motions.empty())
       continue;
-    tasks.push_back(search_one(transfers_[p], found_[p]));
+    tasks.push_back(transfers_[p].search());
     pairs.push_back(p);
   }
-  co_await tess::when_all(std::move(tasks));
-  for (const std::size_t p : pairs) {
+  std::vector<SearchSummary> found = co_await tess::when_all(std::move(tasks));
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    const std::size_t p = pairs[k];
+    found_[p] = std::move(found[k]);
     keep_least(seconds_[p].again, found_[p].broad + found_[p].narrow);
     ++searches_[p];
   }
@@ -125,7 +122,7 @@ Task GraphRun::audit_source(std::size_t pair) {
   const std::size_t source = problem_.pairs[pair].source;
   NormsRequest request{problem_.meshes[source].name, {}, {}};
   request.truth.resize(problem_.field_names.size(), {"0", {}});
-  co_await measure_norms(meshes_[source], std::move(request), &audits_[pair].source);
+  audits_[pair].source = co_await measure_norms(meshes_[source], std::move(request));
 }
 
 /// Compares with the formulas at the places where the target is now. The formulas follow the mesh
@@ -136,9 +133,9 @@ Task GraphRun::audit_target(std::size_t pair) {
   NormsRequest request{mesh.name, {}, back(target)};
   for (const std::string& name : problem_.field_names)
     request.truth.push_back({name, problem_.domain});
-  co_await measure_norms(meshes_[target], std::move(request), &audits_[pair].target);
-  co_await hash_values(meshes_[target], mesh.survey.n_points,
-                       scalar_columns(problem_.field_names.size()), &audits_[pair].result_hash);
+  audits_[pair].target = co_await measure_norms(meshes_[target], std::move(request));
+  audits_[pair].result_hash = co_await hash_values(meshes_[target], mesh.survey.n_points,
+                                                   scalar_columns(problem_.field_names.size()));
 }
 
 Task GraphRun::destroy() {

@@ -65,9 +65,7 @@ Task run_all(const std::vector<Case>& cases, std::int32_t n_parts, const Ways& w
   for (std::size_t k = 0; k < cases.size(); ++k) {
     progress.part(k + 1, cases.size());
     if (!refusal(cases[k]).empty()) continue;
-    Answer answer;
-    co_await answer_of(cases[k], n_parts, ways, answer);
-    answers[k].push_back(std::move(answer));
+    answers[k].push_back(co_await answer_of(cases[k], n_parts, ways));
   }
 }
 
@@ -81,7 +79,7 @@ Task run_parts(const std::vector<Case>& cases, const std::vector<std::int32_t>& 
 
 }  // namespace
 
-Task answer_of(const Case& c, std::int32_t n_parts, const Ways& ways, Answer& answer) {
+TaskOf<Answer> answer_of(const Case& c, std::int32_t n_parts, const Ways& ways) {
   const std::vector<Field> source_fields{{"f", 1, c.values}};
   const std::vector<Field> target_fields{{"f", 1, std::vector<double>(c.target.n_points(), 0.0)}};
   std::vector<DistributedMesh> meshes;
@@ -93,12 +91,13 @@ Task answer_of(const Case& c, std::int32_t n_parts, const Ways& ways, Answer& an
   Transfer transfer(meshes[0], meshes[1], options);
   co_await transfer.search();
   co_await transfer.apply();
-  Gathered result;
-  co_await gather(meshes[1], c.target.n_points(), result);
+  Gathered result = co_await gather(meshes[1], c.target.n_points());
+  Answer answer;
   answer.status = std::move(result.status);
   answer.values = std::move(result.values.front());
   co_await epoch([&] { transfer.destroy(); });
   co_await destroy(meshes);
+  co_return answer;
 }
 
 std::string refusal(const Case& c) {

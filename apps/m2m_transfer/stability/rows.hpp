@@ -40,7 +40,7 @@ struct Ways {
 };
 
 /// Runs a case with so many parts per mesh. The target starts with zeros.
-Task answer_of(const Case& c, std::int32_t n_parts, const Ways& ways, Answer& answer);
+TaskOf<Answer> answer_of(const Case& c, std::int32_t n_parts, const Ways& ways);
 
 /// The reason why a mesh of the case is refused; empty if it is valid.
 [[nodiscard]] std::string refusal(const Case& c);

@@ -28,10 +28,9 @@ Task run_steps(Problem& problem, std::vector<DistributedMesh>& meshes, std::int3
   co_await graph.destroy();
 }
 
-Task hash_of(const Problem& problem, const std::vector<DistributedMesh>& meshes,
-             std::uint64_t& hash) {
-  co_await hash_values(meshes[1], problem.meshes[1].survey.n_points,
-                       scalar_columns(problem.field_names.size()), &hash);
+TaskOf<std::uint64_t> hash_of(const Problem& problem, const std::vector<DistributedMesh>& meshes) {
+  return hash_values(meshes[1], problem.meshes[1].survey.n_points,
+                     scalar_columns(problem.field_names.size()));
 }
 
 }  // namespace
@@ -39,21 +38,19 @@ Task hash_of(const Problem& problem, const std::vector<DistributedMesh>& meshes,
 Task measure_steps(Problem& problem, std::int32_t repeat, apps::Progress& progress,
                    std::vector<StepsRow>& rows) {
   progress.phase("partition");
-  std::vector<DistributedMesh> meshes;
-  co_await place(problem, problem.kind, problem.chares(), meshes);
+  std::vector<DistributedMesh> meshes = co_await place(problem, problem.kind, problem.chares());
   double warm = 0, again = 0;
   co_await run_steps(problem, meshes, 1, progress, warm);
   for (std::int32_t round = 0; round < repeat; ++round)
     co_await run_steps(problem, meshes, 1, progress, again);
-  std::uint64_t hash_again = 0;
-  co_await hash_of(problem, meshes, hash_again);
+  const std::uint64_t hash_again = co_await hash_of(problem, meshes);
   for (const int steps : counts) {
     StepsRow row{problem.meshes[0].name, problem.meshes[1].name, steps, 0, again, 0, hash_again};
     double whole = 0;
     for (std::int32_t round = 0; round < repeat; ++round)
       co_await run_steps(problem, meshes, steps, progress, whole);
     row.kept = whole / steps;
-    co_await hash_of(problem, meshes, row.hash);
+    row.hash = co_await hash_of(problem, meshes);
     rows.push_back(std::move(row));
   }
   co_await destroy(meshes);

@@ -65,15 +65,15 @@ FileFieldsReport moved(const FileFieldsRequest& request, std::int32_t n_pes = 2)
   FileFieldsReport report;
   apps::Progress progress(nullptr);
   Setup setup{make_threads_machine(n_pes), {}};
-  REQUIRE(run(setup, [&]() -> Task { return move_file_fields(request, progress, &report); }) == 0);
+  const auto main = [&]() -> Task { report = co_await move_file_fields(request, progress); };
+  REQUIRE(run(setup, main) == 0);
   return report;
 }
 
 Task attempt(const FileFieldsRequest& request, std::string* message) {
   apps::Progress progress(nullptr);
-  FileFieldsReport report;
   try {
-    co_await move_file_fields(request, progress, &report);
+    co_await move_file_fields(request, progress);
   } catch (const Error& error) {
     *message = error.what();
   }

@@ -13,9 +13,8 @@ Task move() {
     target = scatter(to, {{"g", 1, std::vector<double>(to.n_points())}}, 4, PartitionMethod::rcb);
   });
   const TransferOptions options{.policy = Nearest{}};
-  TransferSummary summary;
-  co_await transfer(source, target, options, &summary);
-  const auto& n = summary.tally.counts;
+  const TransferSummary summary = co_await transfer(source, target, options);
+  const auto& n = summary.search.tally.counts;
   print("inside ", n[0], ", boundary ", n[1], "\n");
 }
 

@@ -124,9 +124,7 @@ Task transfers(Cut c, Transferred& found) {
   CouplingOptions options;
   options.kind = TransferKind::conservative_bounded;
   Coupling nodes(source, target, options);
-  SearchSummary summary;
-  co_await nodes.search(&summary);
-  found.tally = summary.tally;
+  found.tally = (co_await nodes.search()).tally;
   // Other couplings between the same pieces, at the same time.
   options.kind = TransferKind::conservative;
   options.target_values = Centring::cells;
@@ -134,7 +132,7 @@ Task transfers(Cut c, Transferred& found) {
   options.source_values = Centring::cells;
   options.target_values = Centring::nodes;
   Coupling from_cells(source, target, options);
-  Task first = to_cells.search(), second = from_cells.search();
+  auto first = to_cells.search(), second = from_cells.search();
   co_await first;
   co_await second;
 

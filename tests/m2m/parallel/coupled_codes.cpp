@@ -139,10 +139,10 @@ Task expect(ArrayProxy<C> array, int step, bool both = false) {
 }
 
 template <class C>
-Task values_of(ArrayProxy<C> array, ValueOf* out) {
+TaskOf<ValueOf> values_of(ArrayProxy<C> array) {
   Future<ValueOf> all;
   array.template broadcast<&C::gather>(all.callback());
-  *out = co_await all;
+  co_return co_await all;
 }
 
 const TetMesh left_mesh = kuhn_mesh({6, 0.2});
@@ -207,7 +207,7 @@ Task migration() {
         codes.right.broadcast<&Right::hop>(k + 1);
       };
       if (k % 4 == 1) {
-        Task search = there.search();
+        auto search = there.search();
         co_await epoch(hop);
         co_await search;
       }
@@ -257,7 +257,7 @@ Task three_at_once() {
   Coupling a(codes.left, codes.right);
   Coupling b(codes.left, third);
   Coupling c(codes.left, codes.left);
-  Task sa = a.search(), sb = b.search(), sc = c.search();
+  auto sa = a.search(), sb = b.search(), sc = c.search();
   co_await sa;
   co_await sb;
   co_await sc;
@@ -317,15 +317,13 @@ Task motion() {
     co_await step(codes, k);
     Task apply = still.apply<&Left::out, &Right::in>();
     co_await epoch([&] { moving.broadcast<&Right::move>(Point{k % 2 == 1 ? -0.5 : 0.5, 0, 0}); });
-    SearchSummary found;
-    co_await to_moving.search(&found);
+    const SearchSummary found = co_await to_moving.search();
     co_await to_moving.apply<&Left::out, &Right::in>();
     co_await apply;
     co_await expect(codes.right, k);
     const std::uint64_t n_outside = found.tally.counts[static_cast<std::size_t>(Status::outside)];
     TESS_CHECK(n_outside == (k % 2 == 1 ? 32U : 0U), n_outside, " points outside in step ", k);
-    ValueOf values;
-    co_await values_of(moving, &values);
+    const ValueOf values = co_await values_of(moving);
     std::uint64_t n_filled = 0;
     for (const auto& [id, row] : values) n_filled += row[0] == -7e5 ? 1U : 0U;
     TESS_CHECK(n_filled == n_outside, n_filled, " points have the value of the policy");
@@ -406,7 +404,7 @@ Task two_kinds() {
   options.kind = TransferKind::conservative;
   Coupling mean(codes.left, codes.right, options), point(codes.left, codes.right);
   Coupling to_itself(codes.left, codes.left);
-  Task one = mean.search(), other = point.search(), third = to_itself.search();
+  auto one = mean.search(), other = point.search(), third = to_itself.search();
   co_await one;
   co_await other;
   co_await third;
@@ -418,9 +416,8 @@ Task two_kinds() {
   co_await a;
   co_await b;
   co_await c;
-  ValueOf given, taken;
-  co_await values_of(codes.left, &given);
-  co_await values_of(codes.right, &taken);
+  const ValueOf given = co_await values_of(codes.left);
+  const ValueOf taken = co_await values_of(codes.right);
   const double want = integral(left_mesh, given), got = integral(right_mesh, taken);
   TESS_CHECK(std::abs(got - want) < 1e-12, "the integral changes from ", want, " to ", got);
   co_await end(codes);
@@ -432,13 +429,11 @@ Task weights_by_hand() {
   co_await make(codes, 4, 5);
   Coupling there(codes.left, codes.right);
   co_await there.search();
-  WeightMatrix matrix;
-  co_await collect_weights(there, std::ssize(left_mesh.points), std::ssize(right_mesh.points),
-                           &matrix);
+  const WeightMatrix matrix =
+      co_await collect_weights(there, std::ssize(left_mesh.points), std::ssize(right_mesh.points));
   co_await step(codes, 2);
   co_await there.apply<&Left::out, &Right::in>();
-  ValueOf taken;
-  co_await values_of(codes.right, &taken);
+  const ValueOf taken = co_await values_of(codes.right);
   std::vector<double> values, by_library(right_mesh.n_points());
   for (const Point& p : left_mesh.points) values.push_back(truth(p, 2, 0));
   apply(matrix, values, 1, by_library);
@@ -516,8 +511,7 @@ Task rounds_to(double reach, TransferKind kind) {
     co_await there.search();
     co_await step(codes, k);
     co_await there.apply<&Left::out, &Right::in>();
-    ValueOf whole, by_rounds;
-    co_await values_of(codes.right, &whole);
+    const ValueOf whole = co_await values_of(codes.right);
     co_await epoch([&] {
       codes.left.broadcast<&Left::hop>(k);
       codes.right.broadcast<&Right::hop>(k + 1);
@@ -527,11 +521,9 @@ Task rounds_to(double reach, TransferKind kind) {
       for (std::uint64_t round = 0; round < n_rounds; ++round)
         codes.left.broadcast<&Left::start_round>(there.id());
     });
-    co_await values_of(codes.right, &by_rounds);
+    const ValueOf by_rounds = co_await values_of(codes.right);
     TESS_CHECK(by_rounds == whole, "rounds of pieces give other values in step ", k);
-    Future<std::uint64_t> n_received;
-    codes.right.broadcast<&Right::count_received>(n_received.callback());
-    const std::uint64_t n = co_await n_received;
+    const std::uint64_t n = co_await codes.right.reduce<&Right::count_received>();
     TESS_CHECK(n == (1 + n_rounds) * n_targets, n, " calls of received() in step ", k);
   }
   co_await end(codes);
@@ -551,15 +543,14 @@ Task repeats() {
   });
   Coupling there(codes.left, codes.right);
   co_await there.search();
-  ValueOf first, last;
   co_await there.apply<&Left::out, &Right::in>();
-  co_await values_of(codes.right, &first);
+  const ValueOf first = co_await values_of(codes.right);
   tess::test::Growth growth(10'000);
   for (int round = 1; round <= growth.n_rounds(); ++round) {
     co_await there.apply<&Left::out, &Right::in>();
     growth.after(round);
   }
-  co_await values_of(codes.right, &last);
+  const ValueOf last = co_await values_of(codes.right);
   TESS_CHECK(first == last, "other values after 10000 applications");
   TESS_CHECK(growth.bytes() < 1 << 20, "memory grows by ", growth.bytes(), " bytes");
   co_await expect(codes.right, 0);

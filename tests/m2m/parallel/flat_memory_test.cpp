@@ -25,10 +25,9 @@ Task transfer_often(const Scene& scene, tess::test::Growth& growth, std::uint64_
   co_await epoch(place);
   const TransferOptions options{.policy = Nearest{}};
   for (int round = 1; round <= growth.n_rounds(); ++round) {
-    TransferSummary summary;
-    co_await transfer(source, target, options, &summary);
+    const TransferSummary summary = co_await transfer(source, target, options);
     for (const Status status : {Status::inside, Status::boundary})
-      n_found += summary.tally.counts[static_cast<std::size_t>(status)];
+      n_found += summary.search.tally.counts[static_cast<std::size_t>(status)];
     growth.after(round);
   }
 }

@@ -109,8 +109,7 @@ Task transfer_case(const LocatedCase& c, std::int32_t n_parts, Located& out) {
     target = scatter(c.target, {{"f", 1, std::vector<double>(c.target.n_points(), kept)}},
                      n_parts % 5 + 1, PartitionMethod::hsfc);
   });
-  TransferSummary summary;
-  co_await transfer(source, target, c.options, &summary);
+  const TransferSummary summary = co_await transfer(source, target, c.options);
   Future<Outcome> outcome;
   target.workers.broadcast<&Worker::gather>(outcome.callback());
   const Outcome all = co_await outcome;
@@ -123,7 +122,7 @@ Task transfer_case(const LocatedCase& c, std::int32_t n_parts, Located& out) {
     out.distance[v] = all.distance[i];
     out.values[v] = all.values[i];
   }
-  out.worst.assign(summary.worst.list().begin(), summary.worst.list().end());
+  out.worst.assign(summary.search.worst.list().begin(), summary.search.worst.list().end());
 }
 
 void check_on_schedules(const LocatedCase& c, std::uint64_t n_seeds = 12) {

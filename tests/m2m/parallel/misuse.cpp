@@ -82,12 +82,12 @@ Task misuse(std::string name, TransferKind kind) {
   if (name == "same_ids") co_await epoch([&] { source[{1}].send<&Patch::number_alike>(); });
   Coupling coupling(source, target, options);
   if (name == "two_first_searches") {
-    const Task first = coupling.search();
+    const auto first = coupling.search();
     co_await coupling.search();
   }
   co_await coupling.search();
   if (name == "two_searches") {
-    const Task first = coupling.search();
+    const auto first = coupling.search();
     co_await coupling.search();
   }
   if (name == "search_meanwhile") {
@@ -95,12 +95,15 @@ Task misuse(std::string name, TransferKind kind) {
     co_await coupling.search();
   }
   if (name == "apply_meanwhile") {
-    const Task first = coupling.search();
+    const auto first = coupling.search();
     co_await coupling.apply<&Patch::give, &Patch::take>();
   }
-  if (name == "destroy_in_search" || name == "destroy_in_apply") {
-    const Task first = name == "destroy_in_search" ? coupling.search()
-                                                   : coupling.apply<&Patch::give, &Patch::take>();
+  if (name == "destroy_in_search") {
+    const auto first = coupling.search();
+    co_await epoch([&] { coupling.destroy(); });
+  }
+  if (name == "destroy_in_apply") {
+    const Task first = coupling.apply<&Patch::give, &Patch::take>();
     co_await epoch([&] { coupling.destroy(); });
   }
   if (name == "no_arrays") {

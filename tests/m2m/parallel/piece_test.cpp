@@ -101,7 +101,7 @@ Task give_three_rounds(int& n_received, std::int64_t& n_filled, std::uint64_t& n
   options.policy = UseValue{42};
   Coupling coupling(source, target, options);
   SearchSummary summary;
-  for (int k = 0; k < 2; ++k) co_await coupling.search(&summary);
+  for (int k = 0; k < 2; ++k) summary = co_await coupling.search();
   n_outside = summary.tally.count(Status::outside);
   co_await epoch([&] {
     for (int k = 0; k < 3; ++k) source.broadcast<&Counted::start_round>(coupling.id());

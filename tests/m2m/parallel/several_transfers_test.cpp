@@ -73,7 +73,7 @@ DistributedMesh spread(const MeshWithField& p, std::int32_t n_parts) {
 }
 
 TransferOptions options_of(const OutsidePolicy& policy) {
-  return {{0.1, 0, 0}, {0, 0, 0}, policy};
+  return {.policy = policy};
 }
 
 /// Requires equality. A failure does not print the lists.
@@ -117,9 +117,9 @@ Task gather_both(const Spread* meshes, HeldBoth* held) {
 Task there_and_back_and_there(const MeshPair& c, Parts n, HeldBoth* held) {
   Spread meshes;
   co_await spread_both(c, n, &meshes);
-  co_await transfer(meshes.a, meshes.b, c.there(), nullptr);
-  co_await transfer(meshes.b, meshes.a, c.back(), nullptr);
-  co_await transfer(meshes.a, meshes.b, c.there(), nullptr);
+  co_await transfer(meshes.a, meshes.b, c.there());
+  co_await transfer(meshes.b, meshes.a, c.back());
+  co_await transfer(meshes.a, meshes.b, c.there());
   co_await gather_both(&meshes, held);
 }
 
@@ -127,8 +127,8 @@ Task there_and_back_and_there(const MeshPair& c, Parts n, HeldBoth* held) {
 Task exchange(const MeshPair& c, Parts n, HeldBoth* held) {
   Spread meshes;
   co_await spread_both(c, n, &meshes);
-  Task there = transfer(meshes.a, meshes.b, c.there(), nullptr);
-  Task back = transfer(meshes.b, meshes.a, c.back(), nullptr);
+  auto there = transfer(meshes.a, meshes.b, c.there());
+  auto back = transfer(meshes.b, meshes.a, c.back());
   co_await there;
   co_await back;
   co_await gather_both(&meshes, held);
@@ -139,9 +139,9 @@ Task to_two(const MeshPair& c, Parts n, HeldBoth* held) {
   Spread meshes, others;
   co_await spread_both(c, n, &meshes);
   co_await spread_both(c, n, &others);
-  Task one = transfer(meshes.a, meshes.b, c.there(), nullptr);
-  Task two = transfer(meshes.a, others.b, c.there(), nullptr);
-  Task self = transfer(meshes.a, meshes.a, c.there(), nullptr);
+  auto one = transfer(meshes.a, meshes.b, c.there());
+  auto two = transfer(meshes.a, others.b, c.there());
+  auto self = transfer(meshes.a, meshes.a, c.there());
   co_await one;
   co_await two;
   co_await self;
@@ -154,8 +154,8 @@ Task from_two(const MeshPair& left, const MeshPair& right, Parts n, HeldBoth* he
   Spread meshes, others;
   co_await spread_both(left, n, &meshes);
   co_await spread_both(right, n, &others);
-  Task one = transfer(meshes.a, meshes.b, left.there(), nullptr);
-  Task two = transfer(others.a, meshes.b, right.there(), nullptr);
+  auto one = transfer(meshes.a, meshes.b, left.there());
+  auto two = transfer(others.a, meshes.b, right.there());
   co_await one;
   co_await two;
   co_await gather(meshes.b, &held->a);

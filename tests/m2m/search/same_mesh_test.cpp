@@ -122,8 +122,7 @@ Task search_again(std::uint64_t seed, Searches& found) {
       target.broadcast<&MovedPatch::move>(by);
     });
     n_since_change = what == Change::none ? n_since_change + 1 : 1;
-    SearchSummary summary;
-    co_await kept.search(&summary);
+    const SearchSummary summary = co_await kept.search();
     Coupling fresh(source, target, options);
     co_await fresh.search();
     co_await kept.apply<&MovedPatch::give, &MovedPatch::take_kept>();

@@ -174,8 +174,7 @@ TEST_CASE("PE 0 holds a mesh only if it cannot be read in ranges, or Zoltan cuts
     Setup setup = threads(2);
     std::vector<bool> out;
     const auto load_it = [&]() -> Task {
-      Problem problem;
-      co_await load(request, &problem);
+      const Problem problem = co_await load(request);
       for (const RunMesh& mesh : problem.meshes) out.push_back(mesh.mesh.has_value());
     };
     REQUIRE(tess::run(setup, load_it) == 0);

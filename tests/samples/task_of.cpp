@@ -1,0 +1,34 @@
+// The sample of tasks that give values (runtime/task.hpp), compiled and run. tests/samples/check.py
+// compares the text.
+#include "runtime/machine/threads.hpp"
+#include "runtime/runtime.hpp"
+#include "tests/support/catch.hpp"
+
+namespace {
+
+class Lake : public tess::Chare<Lake> {
+ public:
+  void level(tess::Callback<double> target) { contribute(tess::sum, 1.5 * index().x, target); }
+};
+
+tess::TaskOf<double> mean_level(tess::ArrayProxy<Lake> lakes) {
+  tess::Future<double> sum;
+  lakes.broadcast<&Lake::level>(sum.callback());
+  const double of_all = co_await sum;
+  co_return of_all / lakes.size();
+}
+
+tess::Task measure(double& found) {
+  const auto lakes = tess::create<Lake>(tess::range(5));
+  const double mean = co_await mean_level(lakes);
+  found = mean;
+}
+
+}  // namespace
+
+TEST_CASE("the sample of runtime/task.hpp gives a mean", "[runtime][sample][task]") {
+  double found = 0;
+  tess::Setup setup{tess::make_threads_machine(2), {}};
+  REQUIRE(tess::run(setup, [&]() -> tess::Task { return measure(found); }) == 0);
+  CHECK(found == 3);
+}
