@@ -114,7 +114,7 @@ tess::Task await_values(Seen& seen) {
   const std::string plain = co_await text_of(depots, 2, true);
   seen.texts.push_back(plain);
   // In an expression, in conditions, in the middle of other temporaries.
-  seen.texts.push_back("<" + co_await text_of(depots, 3, false) + std::string("> ") +
+  seen.texts.push_back(std::string("<") + co_await text_of(depots, 3, false) + "> " +
                        co_await at_once());
   if ((co_await at_once()).size() == 7) seen.numbers.push_back(7);
   seen.numbers.push_back(static_cast<int>((co_await text_of(depots, 1, true)).size()) * 2 +
