@@ -180,23 +180,23 @@ TEST_CASE("an entry method that creates on demand needs no other call", "[runtim
 namespace {
 
 /// Is created by the first call, and says where.
-class Summoned : public tess::Chare<Summoned> {
+class OnCall : public tess::Chare<OnCall> {
  public:
   [[nodiscard]] int come_here() { return tess::my_pe().value; }
   [[nodiscard]] int come_home() { return tess::my_pe().value; }
   using EntryAttributes =
-      tess::Attributes<tess::EntryMethod<&Summoned::come_here, tess::create_here>,
-                       tess::EntryMethod<&Summoned::come_home, tess::create_home>>;
+      tess::Attributes<tess::EntryMethod<&OnCall::come_here, tess::create_here>,
+                       tess::EntryMethod<&OnCall::come_home, tess::create_home>>;
 };
 
 tess::Task summon(std::vector<int>& places) {
-  const auto all = tess::create<Summoned>(tess::sparse);
+  const auto all = tess::create<OnCall>(tess::sparse);
   std::vector<tess::Index1> away;  // their home is the other PE
   for (int x = 0; away.size() < 3; ++x)
     if (all.here().home({x}) != tess::my_pe()) away.push_back({x});
-  places.push_back(co_await all[away[0]].ask<&Summoned::come_here>());
-  places.push_back(co_await all[away[1]].ask<&Summoned::come_home>());
-  places.push_back(co_await all[away[2]].with(tess::expedited).ask<&Summoned::come_here>());
+  places.push_back(co_await all[away[0]].ask<&OnCall::come_here>());
+  places.push_back(co_await all[away[1]].ask<&OnCall::come_home>());
+  places.push_back(co_await all[away[2]].with(tess::expedited).ask<&OnCall::come_here>());
 }
 
 }  // namespace
