@@ -100,3 +100,19 @@ TEST_CASE("errors fall with the level of the tree and with the order", "[apps][a
   CHECK(third < second);
   CHECK(error(2, 3) < second / 3);
 }
+
+TEST_CASE("a field as wide as the cube is smooth at its border", "[apps][amr]") {
+  const auto error = [](std::int32_t level) {
+    Settings settings = small(level, level);
+    Problem& problem = settings.problem;
+    problem.order = 3;
+    problem.width = 0.7;
+    problem.n_steps = 0;
+    problem.end = 0.1;
+    problem.complete();
+    return run(settings, 2, 1).l1();
+  };
+  const double first = error(1), second = error(2), third = error(3);
+  CHECK(second < first / 6);
+  CHECK(third < second / 6);
+}
