@@ -125,6 +125,12 @@ void check_grain(const Problem& problem) {
                problem.n - most_path_rows);
 }
 
+void check_expected(const Problem& problem, std::optional<std::uint64_t> expected) {
+  if (problem.first && expected.value_or(0) > 0)
+    tess::fail(tess::ErrorCode::bad_argument, "--expect ", *expected,
+               ": --first does not count; give --expect 0 if there is none, or leave one out");
+}
+
 void Outcome::add(const Outcome& part) {
   count.n_solutions += part.count.n_solutions;
   count.n_boards += part.count.n_boards;

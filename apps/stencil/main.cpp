@@ -163,7 +163,8 @@ int main(int argc, char** argv) {
     if (!line.parse(argc, argv)) return 0;
     options.checkpoints.check(line, {"--blocks", "--size", "--log-steps"});
     plot::require_writable("--json", options.json);
-    if (grid.n_blocks > grid.problem.size)
+    // A restart takes what is not given from the checkpoint.
+    if (!options.checkpoints.restarts() && grid.n_blocks > grid.problem.size)
       tess::fail(tess::ErrorCode::bad_argument, "--blocks: ", grid.n_blocks,
                  " blocks on an axis of ", grid.problem.size,
                  " points: give at most one per point");
