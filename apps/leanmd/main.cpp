@@ -149,6 +149,11 @@ int run(tess::Setup& setup, int argc, char** argv) {
       line, {"--cells", "--atoms", "--dt", "--cutoff", "--density", "--gradient", "--temperature",
              "--seed", "--exchange", "--skin", "--every"});
   if (line.is_given("--balance")) s.options.balance = tess::parse_balance(s.balance);
+  if (s.stability)  // its cases have their own problems
+    line.refuse_beside("--stability",
+                       {"--cells", "--atoms", "--steps", "--dt", "--cutoff", "--density",
+                        "--gradient", "--temperature", "--seed", "--exchange", "--skin", "--every",
+                        "--balance", "--check", "--reverse"});
   if (!s.options.checkpoints.restarts()) check_problem(s);  // else it is in the checkpoint
   check_use(s, setup.options.trace);
   apps::Progress progress(setup.machine->process() == tess::ProcessId{0} ? stderr : nullptr);
