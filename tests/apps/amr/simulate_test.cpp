@@ -101,6 +101,20 @@ TEST_CASE("errors fall with the level of the tree and with the order", "[apps][a
   CHECK(error(2, 3) < second / 3);
 }
 
+TEST_CASE("where messages have a fixed cost, cells have one", "[apps][amr]") {
+  tess::SimulatedOptions options;
+  options.n_pes = 1;
+  options.cost = tess::Time(1);
+  tess::Setup setup{tess::make_simulated_machine(options), {}};
+  Settings settings = small(0, 0);
+  settings.problem.n_cells = 32;
+  settings.problem.n_steps = 4;
+  settings.problem.complete();
+  Outcome outcome;
+  CHECK(tess::run(setup, [&] { return simulate(settings, outcome); }) == 0);
+  CHECK(outcome.seconds / static_cast<double>(outcome.cell_steps) == Approx(30e-9).epsilon(0.1));
+}
+
 TEST_CASE("a field as wide as the cube is smooth at its border", "[apps][amr]") {
   const auto error = [](std::int32_t level) {
     Settings settings = small(level, level);
