@@ -39,6 +39,13 @@ TEST_CASE("the result is the same for any cells, PEs, schedules and migrations",
   REQUIRE(expected.error.empty());
   REQUIRE(expected.wrong_forces == 0);
   REQUIRE(expected.hash != expected.first_hash);
+  std::int64_t most_change = 0, most_kinetic = 0;
+  for (const Vector& one : expected.energies) {
+    most_change = std::max(most_change, std::abs(one[2] - expected.energies.front()[2]));
+    most_kinetic = std::max(most_kinetic, one[0]);
+  }
+  CHECK(expected.most_change == most_change);
+  CHECK(expected.most_kinetic == most_kinetic);
   std::uint64_t seed = 0;
   for (const std::array<std::int32_t, 3> cells :
        {std::array{2, 2, 2}, std::array{1, 4, 2}, std::array{3, 3, 3}}) {
