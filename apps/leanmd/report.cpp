@@ -3,6 +3,7 @@
 #include "apps/plot/json_text.hpp"
 #include "runtime/here.hpp"
 
+#include <algorithm>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
@@ -44,7 +45,7 @@ std::string table(const Options& options, const Outcome& outcome) {
   };
   std::string out = fmt::format("{:>8}{:>14}{:>14}{:>14}   energies per atom\n", "step", "kinetic",
                                 "potential", "total");
-  const std::size_t last = outcome.energies.size() - 1;
+  const std::size_t last = outcome.energies.size() - 1;  // of a run that ended early the last good
   for (std::size_t step = 0; step <= last; step += std::max<std::size_t>(1, last / 5)) {
     const Vector& one = outcome.energies[step];
     out += fmt::format("{:>8}{:>14.6f}{:>14.6f}{:>14.6f}\n", step, per_atom(one, 0),
@@ -57,8 +58,8 @@ std::string table(const Options& options, const Outcome& outcome) {
   out += fmt::format(
       "{} atoms, {} cells, {} steps: {:.6f} s, {:.3f} ms a step; energy drift {:.3e}{}; hash "
       "{:016x}\n",
-      outcome.n_atoms, cells(options), options.n_steps, outcome.seconds,
-      1e3 * outcome.seconds / std::max(1, options.n_steps), outcome.drift(),
+      outcome.n_atoms, cells(options), last, outcome.seconds,
+      1e3 * outcome.seconds / static_cast<double>(std::max<std::size_t>(1, last)), outcome.drift(),
       outcome.wrong_forces == 0 ? "; forces as of all pairs" : "", outcome.hash);
   return out;
 }

@@ -1,5 +1,6 @@
 // Runs on the simulated machine in adversarial order, with forced migration and balancing: one
 // result.
+#include "apps/leanmd/report.hpp"
 #include "apps/leanmd/stability.hpp"
 #include "apps/leanmd/study.hpp"
 #include "tests/support/adversarial.hpp"
@@ -86,6 +87,7 @@ TEST_CASE("a run that cannot continue says why, and ends early", "[leanmd]") {
     CHECK(outcome.error.find("step 1, atom ") == 0);
     CHECK_FALSE(outcome.is_wrong);
     CHECK(outcome.energies.size() == 1);
+    CHECK(table(options, outcome).find(" cells, 0 steps: ") != std::string::npos);
     CHECK(outcome.error == run(options, 1, 0).error);
   }
 }
