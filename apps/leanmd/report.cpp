@@ -4,6 +4,7 @@
 #include "runtime/here.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
@@ -24,6 +25,20 @@ std::size_t n_computes(const Problem& problem) {
   return n_cells * (n_partners + 1) / 2;
 }
 
+std::string balancing(const tess::BalanceOptions& balance, std::int32_t every) {
+  const std::string by = "computes are measured, and balanced by " + balance.strategy;
+  switch (balance.when) {
+    case tess::BalanceWhen::at_sync:
+      return fmt::format("{} every {} steps\n", by, every);
+    case tess::BalanceWhen::automatic:
+      return fmt::format("{}; every {} steps a barrier, and a round if it pays off\n", by, every);
+    case tess::BalanceWhen::periodic:
+      return fmt::format("{} every {} ms, beside the steps\n", by,
+                         std::chrono::duration<double, std::milli>(balance.period).count());
+  }
+  return "";
+}
+
 }  // namespace
 
 std::string explain(const Options& options, std::int64_t n_atoms) {
@@ -34,8 +49,7 @@ std::string explain(const Options& options, std::int64_t n_atoms) {
       n_atoms, p.box.edge, cells(options), n_computes(p),
       p.box.cells_within(p.cutoff + p.skin, {}).size(), options.n_steps, p.dt, p.cutoff,
       p.exchange_every,
-      options.balance ? fmt::format("computes are measured, and balanced by {} every {} steps\n",
-                                    options.balance->strategy, p.every)
+      options.balance ? balancing(*options.balance, p.every)
                       : std::string("no balancer: nothing is measured, no barrier\n"));
 }
 
