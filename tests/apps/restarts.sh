@@ -50,6 +50,8 @@ exits 2 "--cells: 3,3,3, but the checkpoint has 3,2,3" "$bin/leanmd" --cells 3,3
 exits 2 "--steps: 5, but the checkpoint has done" "$bin/leanmd" --steps 5 --pes 2 --restart "$folder"
 exits 2 "not for --study" "$bin/leanmd" --study --checkpoint "$scratch/none"
 exits 2 "was written by a program\|of the class" "$bin/amr" --pes 2 --restart "$folder"
+# The rounds before the restart are in the result, too.
+grep -q '"max_over_average"' "$scratch/run.json" && pass || fail "no rounds of before the restart"
 # Options that are given again need not work with the defaults of the others.
 rm -rf "$folder"
 small=(--atoms 20 --steps 10 --pes 2)
@@ -60,6 +62,8 @@ problem=(--cells 4 --max-level 4 --change-every 3)
 balance= from_machine_to_machine amr 5 14 20 26 32 "${problem[@]}"
 balance="--balance greedy_refine" from_machine_to_machine amr 2 14 20 26 32 "${problem[@]}"
 balance="--balance rotate" from_machine_to_machine amr 1 14 20 26 32 "${problem[@]}" --balance hilbert
+runs "$bin/amr" --steps 32 --pes 1 --restart "$folder"
+grep -q '"moved": [1-9]' "$scratch/run.json" && pass || fail "no moves of before the restart"
 exits 2 "--order: 3, but the checkpoint has 2" "$bin/amr" --order 3 --pes 2 --restart "$folder"
 exits 2 "--uncorrected: yes, but the checkpoint has no" "$bin/amr" --uncorrected --pes 2 --restart "$folder"
 exits 2 "not for --study" "$bin/amr" --stability --checkpoint "$scratch/none"
