@@ -6,6 +6,7 @@
 #include <cerrno>
 #include <cstdlib>
 #include <filesystem>
+#include <fmt/format.h>
 #include <optional>
 #include <type_traits>
 
@@ -38,6 +39,14 @@ template <class T>
 struct OneOf<std::optional<T>> : OneOf<T> {};
 template <class T>
 struct OneOf<std::vector<T>> : OneOf<T> {};
+
+/// CLI11 prints six digits, with which values that differ may look equal.
+std::string all_digits(double value) {
+  return fmt::format("{}", value);
+}
+std::string all_digits(const std::vector<double>& values) {
+  return fmt::format("{}", fmt::join(values, ","));
+}
 
 /// CLI11 takes -1 for 2^64 - 1, and so what is larger.
 std::string fits_unsigned(const std::string& value) {
@@ -126,6 +135,8 @@ Option CommandLine::option(const std::string& name, T& value, const std::string&
   CLI::Option* const option = app_->add_option(name.substr(0, space), value, meaning);
   option->type_name(space == std::string::npos ? placeholder<T>() : name.substr(space + 1));
   option->group(group_);
+  if constexpr (std::is_floating_point_v<typename OneOf<T>::type>)
+    option->default_function([&value] { return all_digits(value); });
   option->capture_default_str();
   if constexpr (std::is_same_v<typename OneOf<T>::type, std::uint64_t>)
     option->check(fits_unsigned, "");

@@ -75,7 +75,8 @@ class CommandLine {
   void refuse_without(const std::string& what, std::initializer_list<const char*> names) const;
   /// Throws refuse_together() if one of the options is given, since `other` leaves it unused.
   void refuse_beside(const std::string& other, std::initializer_list<const char*> names) const;
-  /// The value of an option as text, whether it is given or the default: equal for equal values.
+  /// The value of an option as text, whether it is given or the default: equal for equal values, and
+  /// for no others.
   [[nodiscard]] std::string value(const std::string& name) const;
 
  private:

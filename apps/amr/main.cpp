@@ -121,7 +121,7 @@ int start(tess::Setup& setup, int argc, char** argv) {
   std::ranges::copy(velocity, problem.velocity.begin());
   std::ranges::copy(centre, problem.centre.begin());
   problem.corrected = !options.uncorrected;
-  problem.complete();
+  if (!settings.checkpoints.restarts()) problem.complete();  // else it is in the checkpoint
   if (line.is_given("--balance")) {
     settings.balance = tess::parse_balance(balance);
     if (settings.balance->when == tess::BalanceWhen::periodic)

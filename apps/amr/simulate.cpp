@@ -35,6 +35,12 @@ tess::Task take_census(Blocks blocks, double time, Outcome& outcome) {
   outcome.most_blocks = std::max(outcome.most_blocks, found.n_blocks);
 }
 
+/// Adds the rounds from `n_counted` on, of which a checkpoint saves what they moved.
+void count_moves(const tess::BalancerProxy& balancer, std::size_t& n_counted, Outcome& outcome) {
+  const auto& rounds = balancer.history();
+  for (; n_counted < rounds.size(); ++n_counted) outcome.n_moved += rounds[n_counted].n_moved;
+}
+
 /// Uniform blocks of the least level, then as fine as the field at time 0 demands.
 tess::Task plant(Blocks blocks, const Problem& problem, Outcome& outcome) {
   const std::int32_t edge = 1 << problem.least_level;
@@ -82,6 +88,7 @@ tess::Task simulate(Settings& settings, Outcome& outcome, std::function<void(std
   else
     co_await plant(blocks, problem, outcome);
 
+  std::size_t n_counted = 0;
   while (state.step < problem.n_steps) {
     const tess::Time begin = tess::now();
     const std::int32_t from = state.step;
@@ -95,12 +102,13 @@ tess::Task simulate(Settings& settings, Outcome& outcome, std::function<void(std
     co_await tess::epoch([&] { blocks.broadcast<&Block::advance>(from, n); });
     outcome.cell_steps += outcome.end.n_blocks * problem.cells_per_block() * n;
     outcome.seconds += tess::seconds(tess::now() - begin);
+    count_moves(balancer, n_counted, outcome);
     state.step = from + n;
     state.outcome = outcome;
     co_await settings.checkpoints.save_if_due(state, from, problem.n_steps);
   }
   co_await take_census(blocks, problem.n_steps * problem.dt, outcome);
-  for (const auto& round : balancer.history()) outcome.n_moved += round.n_moved;
+  count_moves(balancer, n_counted, outcome);
   blocks.destroy();
 }
 

@@ -63,8 +63,8 @@ template <class... Text>
   tess::fail(tess::ErrorCode::bad_argument, text...);
 }
 
-/// What no single option can be checked for.
-void check(Settings& s, const std::string& trace) {
+/// What no single option of the problem can be checked for.
+void check_problem(Settings& s) {
   Problem& p = s.options.problem;
   if (!(s.density > 0 && s.density <= 1))
     refuse("--density: ", s.density, " is not above 0 and at most 1");
@@ -87,6 +87,11 @@ void check(Settings& s, const std::string& trace) {
   if (4 * p.box.least_cell_edge() < p.cutoff + p.skin)
     refuse("--cells: a cell of edge ", p.box.least_cell_edge(),
            " is shorter than a quarter of --cutoff and --skin; give fewer cells");
+}
+
+/// Which options work together, and the files.
+void check_use(const Settings& s, const std::string& trace) {
+  const Problem& p = s.options.problem;
   if (s.study && !(p.dt >= 8 * least_dt && p.dt <= 0.5 && s.options.n_steps >= 1))
     refuse("--study: takes steps of an eighth to twice of --dt ", p.dt,
            ", from 1e-5 to 1, and at least one of --steps ", s.options.n_steps);
@@ -144,7 +149,13 @@ int run(tess::Setup& setup, int argc, char** argv) {
       line, {"--cells", "--atoms", "--dt", "--cutoff", "--density", "--gradient", "--temperature",
              "--seed", "--exchange", "--skin", "--every"});
   if (line.is_given("--balance")) s.options.balance = tess::parse_balance(s.balance);
-  check(s, setup.options.trace);
+  if (s.stability)  // its cases have their own problems
+    line.refuse_beside("--stability",
+                       {"--cells", "--atoms", "--steps", "--dt", "--cutoff", "--density",
+                        "--gradient", "--temperature", "--seed", "--exchange", "--skin", "--every",
+                        "--balance", "--check", "--reverse"});
+  if (!s.options.checkpoints.restarts()) check_problem(s);  // else it is in the checkpoint
+  check_use(s, setup.options.trace);
   apps::Progress progress(setup.machine->process() == tess::ProcessId{0} ? stderr : nullptr);
   s.options.progress = &progress;
   return tess::run(setup, [&]() -> tess::Task {

@@ -21,13 +21,20 @@ Conserved Conserved::of(const std::vector<Atom>& atoms) {
 
 void Outcome::add(const Totals& totals, const Problem& problem, const Conserved& kept,
                   std::int32_t step) {
+  const std::size_t n_before = energies.size();
   std::ranges::copy(totals.energies, std::back_inserter(energies));
   n_atoms = totals.n_atoms;
   hash = totals.hash;
   if (totals.trouble) {
     error = describe(totals.trouble, problem);
     energies.resize(static_cast<std::size_t>(std::max(1, totals.trouble.step)));
-  } else if (n_atoms != kept.n_atoms) {
+  }
+  for (std::size_t i = n_before; i < energies.size(); ++i) {
+    most_change = std::max(most_change, std::abs(energies[i][2] - energies.front()[2]));
+    most_kinetic = std::max(most_kinetic, energies[i][0]);
+  }
+  if (totals.trouble) return;
+  if (n_atoms != kept.n_atoms) {
     error = fmt::format("{} atoms of {} are there", n_atoms, kept.n_atoms);
     is_wrong = true;
   } else if (totals.momentum != kept.momentum) {
@@ -60,15 +67,11 @@ double Outcome::energy() const {
 }
 
 double Outcome::drift() const {
-  std::int64_t most = 0;
-  for (const Vector& one : energies) most = std::max(most, std::abs(one[2] - energies.front()[2]));
-  return static_cast<double>(most) * energy_quantum / static_cast<double>(n_atoms);
+  return static_cast<double>(most_change) * energy_quantum / static_cast<double>(n_atoms);
 }
 
 double Outcome::kinetic() const {
-  std::int64_t most = 0;
-  for (const Vector& one : energies) most = std::max(most, one[0]);
-  return static_cast<double>(most) * energy_quantum / static_cast<double>(n_atoms);
+  return static_cast<double>(most_kinetic) * energy_quantum / static_cast<double>(n_atoms);
 }
 
 }  // namespace leanmd

@@ -19,7 +19,9 @@ struct Conserved {
 
 struct Outcome {
   std::vector<Vector> energies;  ///< as Totals::energies, from step 0 on
-  std::int64_t n_atoms = 0;      ///< at the end
+  std::int64_t most_change = 0;  ///< of the total energy since step 0
+  std::int64_t most_kinetic = 0;
+  std::int64_t n_atoms = 0;  ///< at the end
   std::uint64_t first_hash = 0, hash = 0;
   std::int64_t wrong_forces = -1;  ///< atoms whose force is not that of all pairs; -1: not compared
   std::string error;  ///< why the run ended early, or what is wrong with its result; empty: none

@@ -3,6 +3,8 @@
 #include "apps/plot/json_text.hpp"
 #include "runtime/here.hpp"
 
+#include <algorithm>
+#include <chrono>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
@@ -23,6 +25,20 @@ std::size_t n_computes(const Problem& problem) {
   return n_cells * (n_partners + 1) / 2;
 }
 
+std::string balancing(const tess::BalanceOptions& balance, std::int32_t every) {
+  const std::string by = "computes are measured, and balanced by " + balance.strategy;
+  switch (balance.when) {
+    case tess::BalanceWhen::at_sync:
+      return fmt::format("{} every {} steps\n", by, every);
+    case tess::BalanceWhen::automatic:
+      return fmt::format("{}; every {} steps a barrier, and a round if it pays off\n", by, every);
+    case tess::BalanceWhen::periodic:
+      return fmt::format("{} every {} ms, beside the steps\n", by,
+                         std::chrono::duration<double, std::milli>(balance.period).count());
+  }
+  return "";
+}
+
 }  // namespace
 
 std::string explain(const Options& options, std::int64_t n_atoms) {
@@ -33,8 +49,7 @@ std::string explain(const Options& options, std::int64_t n_atoms) {
       n_atoms, p.box.edge, cells(options), n_computes(p),
       p.box.cells_within(p.cutoff + p.skin, {}).size(), options.n_steps, p.dt, p.cutoff,
       p.exchange_every,
-      options.balance ? fmt::format("computes are measured, and balanced by {} every {} steps\n",
-                                    options.balance->strategy, p.every)
+      options.balance ? balancing(*options.balance, p.every)
                       : std::string("no balancer: nothing is measured, no barrier\n"));
 }
 
@@ -44,7 +59,7 @@ std::string table(const Options& options, const Outcome& outcome) {
   };
   std::string out = fmt::format("{:>8}{:>14}{:>14}{:>14}   energies per atom\n", "step", "kinetic",
                                 "potential", "total");
-  const std::size_t last = outcome.energies.size() - 1;
+  const std::size_t last = outcome.energies.size() - 1;  // of a run that ended early the last good
   for (std::size_t step = 0; step <= last; step += std::max<std::size_t>(1, last / 5)) {
     const Vector& one = outcome.energies[step];
     out += fmt::format("{:>8}{:>14.6f}{:>14.6f}{:>14.6f}\n", step, per_atom(one, 0),
@@ -57,8 +72,8 @@ std::string table(const Options& options, const Outcome& outcome) {
   out += fmt::format(
       "{} atoms, {} cells, {} steps: {:.6f} s, {:.3f} ms a step; energy drift {:.3e}{}; hash "
       "{:016x}\n",
-      outcome.n_atoms, cells(options), options.n_steps, outcome.seconds,
-      1e3 * outcome.seconds / std::max(1, options.n_steps), outcome.drift(),
+      outcome.n_atoms, cells(options), last, outcome.seconds,
+      1e3 * outcome.seconds / static_cast<double>(std::max<std::size_t>(1, last)), outcome.drift(),
       outcome.wrong_forces == 0 ? "; forces as of all pairs" : "", outcome.hash);
   return out;
 }

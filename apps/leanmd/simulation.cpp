@@ -27,6 +27,8 @@ class Simulation {
  private:
   tess::Task create(const std::vector<Atom>& atoms);
   tess::Task start_balancing();
+  /// The rounds until now, those before a restart first.
+  void collect_rounds();
   /// Stops early if something is wrong.
   tess::Task run_to(std::int32_t last);
   tess::Task run_part(std::int32_t first, std::int32_t last);
@@ -38,6 +40,7 @@ class Simulation {
   Options& options_;
   State state_;
   tess::BalancerProxy balancer_;
+  std::size_t n_earlier_rounds_ = 0;  // before a restart
 };
 
 tess::Task Simulation::run(const std::vector<Atom>& atoms, Outcome& outcome) {
@@ -47,6 +50,7 @@ tess::Task Simulation::run(const std::vector<Atom>& atoms, Outcome& outcome) {
   else
     co_await create(atoms);
   options_.problem = state_.problem;
+  n_earlier_rounds_ = state_.outcome.rounds.size();
   co_await start_balancing();
 
   if (!restarts) {
@@ -56,7 +60,7 @@ tess::Task Simulation::run(const std::vector<Atom>& atoms, Outcome& outcome) {
   }
   co_await run_to(options_.n_steps);
   if (options_.check) co_await compare_forces();
-  state_.outcome.rounds = balancer_.history();
+  collect_rounds();
   if (options_.reverse && state_.outcome.error.empty()) co_await return_to_start();
   state_.cells.destroy();
   state_.computes.destroy();
@@ -90,11 +94,22 @@ tess::Task Simulation::start_balancing() {
     co_await balancer_.begin_phase();
 }
 
+void Simulation::collect_rounds() {
+  const std::vector<tess::balance::Round>& history = balancer_.history();
+  std::vector<tess::balance::Round>& all = state_.outcome.rounds;
+  if (all.size() > n_earlier_rounds_) all.pop_back();  // it may have been measured since
+  while (all.size() < n_earlier_rounds_ + history.size()) {
+    all.push_back(history[all.size() - n_earlier_rounds_]);
+    all.back().number = all.size() - 1;
+  }
+}
+
 tess::Task Simulation::run_to(std::int32_t last) {
   while (state_.step < last && state_.outcome.error.empty()) {
     const std::int32_t from = state_.step, every = state_.problem.every;
     const std::int32_t pause = options_.checkpoints.pause_after(from, last);
     co_await run_part(from + 1, std::min(pause, (from / every + 1) * every));
+    collect_rounds();
     if (state_.outcome.error.empty())
       co_await options_.checkpoints.save_if_due(state_, from, options_.n_steps);
   }

@@ -77,13 +77,14 @@ void draw_study(const std::string& svg, const std::vector<StudyRow>& rows) {
   plot::Series drift{.name = "dt from left to right: shorter"};
   for (const StudyRow& row : rows)
     if (row.error.empty()) drift.points.push_back({row.seconds, row.drift});
-  if (drift.points.empty()) return;
+  chart.series = {std::move(drift)};
   // Twice the steps, a quarter of the error.
-  const plot::Point first = drift.points.front(), last = drift.points.back();
-  plot::Series square{.name = "order 2",
-                      .points = {first, {last.x, first.y * std::pow(first.x / last.x, 2)}},
-                      .style = plot::Style::dashes};
-  chart.series = {std::move(drift), std::move(square)};
+  if (const std::vector<plot::Point>& points = chart.series.front().points; !points.empty()) {
+    const plot::Point first = points.front(), last = points.back();
+    chart.series.push_back({.name = "order 2",
+                            .points = {first, {last.x, first.y * std::pow(first.x / last.x, 2)}},
+                            .style = plot::Style::dashes});
+  }
   (void)plot::write_svg(svg, chart);
 }
 

@@ -56,7 +56,8 @@ tess::Task measure(Options options) {
     for (std::int32_t k = 0; k < options.repeat; ++k) {
       Outcome outcome;
       if (options.checkpoints.are_used())
-        co_await search_in_parts(row.problem, options.grain, options.checkpoints, outcome);
+        co_await search_in_parts(row.problem, options.grain, options.expected, options.checkpoints,
+                                 outcome);
       else
         co_await search(problem, outcome);
       const bool wrong = !fault({row.problem, outcome}, expected_of(options, row)).empty();
@@ -108,9 +109,7 @@ int run(tess::Setup& setup, int argc, char** argv) {
   if (!options.checkpoints.restarts()) check_grain(problem);  // else N is in the checkpoint
   if (options.study)  // it tries all grains and both forms, and counts
     line.refuse_beside("--study", {"--grain", "--form", "--first"});
-  if (problem.first && options.expected.value_or(0) > 0)
-    tess::fail(tess::ErrorCode::bad_argument, "--expect ", *options.expected,
-               ": --first does not count; give --expect 0 if there is none, or leave one out");
+  check_expected(problem, options.expected);
   options.files.check(options.study, setup.options.trace);
   return tess::run(setup, [&] { return measure(options); });
 }

@@ -15,7 +15,8 @@ struct State {
 }  // namespace
 
 tess::Task search_in_parts(Problem& problem, std::optional<std::int32_t> grain,
-                           apps::Checkpoints& checkpoints, Outcome& outcome) {
+                           std::optional<std::uint64_t> expected, apps::Checkpoints& checkpoints,
+                           Outcome& outcome) {
   State state{problem.n, problem.first, 0, {}};
   std::int32_t n_parts = 0;
   if (checkpoints.restarts()) {
@@ -24,6 +25,7 @@ tess::Task search_in_parts(Problem& problem, std::optional<std::int32_t> grain,
     problem.grain = grain.value_or(default_grain(state.n));
     check_grain(problem);
     problem.first = state.first;
+    check_expected(problem, expected);
   }
   std::uint64_t n_above = 0;
   const std::vector<Board> parts = boards_of_row(std::min(problem.n - 1, 3), problem.n, n_above);

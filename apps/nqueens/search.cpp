@@ -1,13 +1,17 @@
 #include "apps/nqueens/search.hpp"
 
+#include "apps/charge.hpp"
 #include "runtime/core/error.hpp"
 #include "runtime/core/hash.hpp"
 #include "runtime/runtime.hpp"
 
+#include <chrono>
 #include <limits>
 
 namespace nqueens {
 namespace {
+
+constexpr std::chrono::nanoseconds per_board{6};  // as measured
 
 /// The index of a task's chare: one per board.
 struct Place {
@@ -79,6 +83,7 @@ void Searcher::run(Board board) {
     search_serially(board);
   } else {
     ++tally_.count.n_boards;
+    apps::charge(per_board, 1);
     for (std::uint32_t free = board.free(problem_.n); free != 0; free &= free - 1)
       send(board.with(free & -free));
   }
@@ -105,7 +110,10 @@ void Searcher::send(const Board& board) const {
 
 void Searcher::search_serially(const Board& board) {
   if (problem_.first) {
-    if (const auto queens = first_below(board, problem_.n, tally_.count.n_boards)) {
+    const std::uint64_t n_before = tally_.count.n_boards;
+    const auto queens = first_below(board, problem_.n, tally_.count.n_boards);
+    apps::charge(per_board, tally_.count.n_boards - n_before);
+    if (queens) {
       best_ = {board.path, *queens};
       group().with(tess::expedited).broadcast<&Searcher::learn>(best_);
     }
@@ -113,6 +121,7 @@ void Searcher::search_serially(const Board& board) {
     const Count below = count_below(board, problem_.n);
     tally_.count.n_solutions += below.n_solutions;
     tally_.count.n_boards += below.n_boards;
+    apps::charge(per_board, below.n_boards);
   }
 }
 
@@ -123,6 +132,12 @@ void check_grain(const Problem& problem) {
     tess::fail(tess::ErrorCode::bad_argument, "--grain: ", problem.grain, " of ", problem.n,
                " rows leaves more than ", most_path_rows, " for tasks: give at least ",
                problem.n - most_path_rows);
+}
+
+void check_expected(const Problem& problem, std::optional<std::uint64_t> expected) {
+  if (problem.first && expected.value_or(0) > 0)
+    tess::fail(tess::ErrorCode::bad_argument, "--expect ", *expected,
+               ": --first does not count; give --expect 0 if there is none, or leave one out");
 }
 
 void Outcome::add(const Outcome& part) {

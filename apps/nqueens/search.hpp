@@ -16,6 +16,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace nqueens {
@@ -35,6 +36,8 @@ struct Problem {
 }
 /// Throws tess::Error for a grain that leaves more rows than a path has.
 void check_grain(const Problem& problem);
+/// Throws tess::Error for an expected number of solutions where only the first is looked for.
+void check_expected(const Problem& problem, std::optional<std::uint64_t> expected);
 
 /// What is known at the end, on all PEs.
 struct Outcome {

@@ -5,6 +5,7 @@
 // them; with --restart it continues from there.
 #include "apps/checkpoints.hpp"
 #include "apps/command_line.hpp"
+#include "apps/plot/file_names.hpp"
 #include "apps/plot/write_file.hpp"
 #include "apps/stencil/grid.hpp"
 #include "runtime/monitor.hpp"
@@ -159,7 +160,11 @@ int main(int argc, char** argv) {
     if (!line.parse(argc, argv)) return 0;
     options.checkpoints.check(line, {"--blocks", "--size", "--log-steps"});
     plot::require_writable("--json", options.json);
-    if (grid.n_blocks > grid.problem.size)
+    plot::FileNames names;
+    names.writes("--trace", setup.options.trace);
+    names.writes("--json", options.json);
+    // A restart takes what is not given from the checkpoint.
+    if (!options.checkpoints.restarts() && grid.n_blocks > grid.problem.size)
       tess::fail(tess::ErrorCode::bad_argument, "--blocks: ", grid.n_blocks,
                  " blocks on an axis of ", grid.problem.size,
                  " points: give at most one per point");

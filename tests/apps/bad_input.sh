@@ -166,6 +166,10 @@ for unused in "--form chares" "--grain 4" --first; do
   refuses "${unused% *} does not work with --study" "$bin/nqueens" 8 --study $unused
 done
 refuses "--order does not work with --study" "$bin/amr" --study --order 3
+for unused in "--atoms 500" "--cells 2,2,2" "--dt 0.1" --check "--balance greedy" "--seed 2"; do
+  refuses "${unused%% *} does not work with --stability" "$bin/leanmd" --stability $unused
+done
+refuses "--json $scratch/result.json would overwrite --trace" "$bin/stencil" --json "$scratch/result.json" --trace "$scratch/result.json"
 for unused in "--balance greedy" "--order 3" "--max-level 3" "--steps 4" "--json $scratch/result.json"; do
   refuses "${unused%% *} does not work with --stability" "$bin/amr" --stability $unused
 done

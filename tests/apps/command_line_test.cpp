@@ -106,6 +106,22 @@ TEST_CASE("a real number between two whole ones is taken, and none beyond them",
   }
 }
 
+TEST_CASE("the text of a value has all of its digits", "[apps][command_line]") {
+  double width = 0.06;
+  std::vector<double> centre{0.35, 1e-9};
+  apps::CommandLine line("A program.");
+  line.option("--width", width, "of the front");
+  line.option("--centre", centre, "of the front").separated_by(',');
+  CHECK(line.value("--width") == "0.06");
+  CHECK(line.value("--centre") == "0.35,1e-09");
+  CHECK(has_line(line.help(), "  --width X   of the front (default 0.06)"));
+  CHECK(has_line(line.help(), "  --centre X  of the front (default 0.35,1e-09)"));
+  parse(line, "--width", "0.0600000003");
+  parse(line, "--centre", "0.350000001,2");
+  CHECK(line.value("--width") == "0.0600000003");
+  CHECK(line.value("--centre") == "0.350000001,2");
+}
+
 TEST_CASE("the last value of an option that is given again counts, and a list has all",
           "[apps][command_line]") {
   std::int32_t n_steps = 4;

@@ -54,6 +54,16 @@ assert 1.9 < study["fitted_order"] < 2.1, study
 assert len(study["rows"]) == 5 and all(row["seconds"] > 0 for row in study["rows"]), study' "$scratch/study.json" && [[ -s $scratch/study.csv ]] &&
   pass || fail "the study"
 
+# A study of which no row is stable has no picture, and says so.
+exits 0 "x.svg: not drawn" "$leanmd" --study --dt 0.5 --atoms 300 --cells 2,2,2 --steps 8 --pes 1 --plot "$scratch/x.svg"
+
+# What a balancer does.
+exits 0 "greedy every 20 steps" "$leanmd" --atoms 300 --cells 2,2,2 --steps 0 --pes 1 --balance greedy --explain
+exits 0 "greedy; every 20 steps a barrier, and a round if it pays off" \
+  "$leanmd" --atoms 300 --cells 2,2,2 --steps 0 --pes 1 --balance greedy,when=automatic --explain
+exits 0 "greedy every 2.5 ms, beside the steps" \
+  "$leanmd" --atoms 300 --cells 2,2,2 --steps 0 --pes 1 --balance greedy,when=periodic,period=2500us --explain
+
 # With a fixed cost the times of the simulated machine are exact: balancing gains over a fifth.
 seconds_of() {
   timeout 60 "$leanmd" --atoms 2000 --cells 4,4,4 --gradient 1 --steps 30 --every 6 --sim pes=4,cost=500ns --json "$scratch/time.json" "$@" >/dev/null

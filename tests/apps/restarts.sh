@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # restarts.sh BIN: leanmd, amr and nqueens stop on 4 threads and restart on 2 ranks, on 7 simulated PEs and on one PE, with
-# and without balancing, with the result_hash of a run that never stopped; and what is refused.
+# and without balancing, with the result_hash of a run that never stopped; stencil restarts; and what is refused.
 source "$(dirname "$0")/../support/checks.sh"
 bin=$1
 folder=$scratch/saved
@@ -50,14 +50,33 @@ exits 2 "--cells: 3,3,3, but the checkpoint has 3,2,3" "$bin/leanmd" --cells 3,3
 exits 2 "--steps: 5, but the checkpoint has done" "$bin/leanmd" --steps 5 --pes 2 --restart "$folder"
 exits 2 "not for --study" "$bin/leanmd" --study --checkpoint "$scratch/none"
 exits 2 "was written by a program\|of the class" "$bin/amr" --pes 2 --restart "$folder"
+# The rounds before the restart are in the result, too.
+grep -q '"max_over_average"' "$scratch/run.json" && pass || fail "no rounds of before the restart"
+# Options that are given again need not work with the defaults of the others.
+rm -rf "$folder"
+small=(--atoms 20 --steps 10 --pes 2)
+runs "$bin/leanmd" "${small[@]}" --density 0.02 --cells 1,1,1 --cutoff 4 --checkpoint "$folder" --checkpoint-every 5
+runs "$bin/leanmd" "${small[@]}" --restart "$folder"
 
 problem=(--cells 4 --max-level 4 --change-every 3)
 balance= from_machine_to_machine amr 5 14 20 26 32 "${problem[@]}"
 balance="--balance greedy_refine" from_machine_to_machine amr 2 14 20 26 32 "${problem[@]}"
 balance="--balance rotate" from_machine_to_machine amr 1 14 20 26 32 "${problem[@]}" --balance hilbert
+runs "$bin/amr" --steps 32 --pes 1 --restart "$folder"
+grep -q '"moved": [1-9]' "$scratch/run.json" && pass || fail "no moves of before the restart"
 exits 2 "--order: 3, but the checkpoint has 2" "$bin/amr" --order 3 --pes 2 --restart "$folder"
 exits 2 "--uncorrected: yes, but the checkpoint has no" "$bin/amr" --uncorrected --pes 2 --restart "$folder"
 exits 2 "not for --study" "$bin/amr" --stability --checkpoint "$scratch/none"
+rm -rf "$folder"
+runs "$bin/amr" --least-level 1 --max-level 1 --width 0.06 --steps 9 --pes 2 --checkpoint "$folder" --checkpoint-every 4
+runs "$bin/amr" --max-level 1 --width 0.06 --pes 2 --restart "$folder"
+exits 2 "--width: 0.06000003, but the checkpoint has 0.06:" "$bin/amr" --width 0.06000003 --pes 2 --restart "$folder"
+
+rm -rf "$folder"
+runs "$bin/stencil" --size 200 --blocks 100 --steps 10 --pes 2 --checkpoint "$folder" --checkpoint-every 5
+want=$(hash_of "$scratch/run.json")
+runs "$bin/stencil" --blocks 100 --pes 2 --restart "$folder"
+same "stencil --blocks 100 after a restart"
 
 # The parts of nqueens are its steps. The first two runs are killed once they have written a checkpoint.
 latest() { ls -d "$folder"/*/manifest.json 2>/dev/null | tail -1; }
@@ -92,6 +111,7 @@ runs "$bin/nqueens" 8 --first --pes 2 --checkpoint "$folder" --checkpoint-every 
 same "nqueens 8 --first in parts"
 runs "$bin/nqueens" --restart "$folder" --pes 1
 same "nqueens --first after a restart"
+exits 2 "--expect 5: --first does not count" "$bin/nqueens" --expect 5 --restart "$folder" --pes 1
 exits 2 "N: 9, but the checkpoint has 8" "$bin/nqueens" 9 --pes 2 --restart "$folder"
 exits 2 "not for --study" "$bin/nqueens" 9 --study --checkpoint "$scratch/none"
 

@@ -100,3 +100,33 @@ TEST_CASE("errors fall with the level of the tree and with the order", "[apps][a
   CHECK(third < second);
   CHECK(error(2, 3) < second / 3);
 }
+
+TEST_CASE("where messages have a fixed cost, cells have one", "[apps][amr]") {
+  tess::SimulatedOptions options;
+  options.n_pes = 1;
+  options.cost = tess::Time(1);
+  tess::Setup setup{tess::make_simulated_machine(options), {}};
+  Settings settings = small(0, 0);
+  settings.problem.n_cells = 32;
+  settings.problem.n_steps = 4;
+  settings.problem.complete();
+  Outcome outcome;
+  CHECK(tess::run(setup, [&] { return simulate(settings, outcome); }) == 0);
+  CHECK(outcome.seconds / static_cast<double>(outcome.cell_steps) == Approx(30e-9).epsilon(0.1));
+}
+
+TEST_CASE("a field as wide as the cube is smooth at its border", "[apps][amr]") {
+  const auto error = [](std::int32_t level) {
+    Settings settings = small(level, level);
+    Problem& problem = settings.problem;
+    problem.order = 3;
+    problem.width = 0.7;
+    problem.n_steps = 0;
+    problem.end = 0.1;
+    problem.complete();
+    return run(settings, 2, 1).l1();
+  };
+  const double first = error(1), second = error(2), third = error(3);
+  CHECK(second < first / 6);
+  CHECK(third < second / 6);
+}

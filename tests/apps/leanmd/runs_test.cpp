@@ -1,5 +1,6 @@
 // Runs on the simulated machine in adversarial order, with forced migration and balancing: one
 // result.
+#include "apps/leanmd/report.hpp"
 #include "apps/leanmd/stability.hpp"
 #include "apps/leanmd/study.hpp"
 #include "tests/support/adversarial.hpp"
@@ -39,6 +40,13 @@ TEST_CASE("the result is the same for any cells, PEs, schedules and migrations",
   REQUIRE(expected.error.empty());
   REQUIRE(expected.wrong_forces == 0);
   REQUIRE(expected.hash != expected.first_hash);
+  std::int64_t most_change = 0, most_kinetic = 0;
+  for (const Vector& one : expected.energies) {
+    most_change = std::max(most_change, std::abs(one[2] - expected.energies.front()[2]));
+    most_kinetic = std::max(most_kinetic, one[0]);
+  }
+  CHECK(expected.most_change == most_change);
+  CHECK(expected.most_kinetic == most_kinetic);
   std::uint64_t seed = 0;
   for (const std::array<std::int32_t, 3> cells :
        {std::array{2, 2, 2}, std::array{1, 4, 2}, std::array{3, 3, 3}}) {
@@ -79,6 +87,7 @@ TEST_CASE("a run that cannot continue says why, and ends early", "[leanmd]") {
     CHECK(outcome.error.find("step 1, atom ") == 0);
     CHECK_FALSE(outcome.is_wrong);
     CHECK(outcome.energies.size() == 1);
+    CHECK(table(options, outcome).find(" cells, 0 steps: ") != std::string::npos);
     CHECK(outcome.error == run(options, 1, 0).error);
   }
 }

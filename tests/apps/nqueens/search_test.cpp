@@ -50,6 +50,22 @@ TEST_CASE("the first solution is the leftmost one under any schedule", "[apps][n
   }
 }
 
+TEST_CASE("where messages have a fixed cost, boards have one", "[apps][nqueens]") {
+  const auto seconds = [](std::int32_t n, bool first) {
+    tess::SimulatedOptions options;
+    options.n_pes = 1;
+    options.cost = tess::Time(100);
+    tess::Setup setup{tess::make_simulated_machine(options), {}};
+    Outcome outcome;
+    CHECK(tess::run(setup, [&] { return search({.n = n, .grain = n, .first = first}, outcome); }) ==
+          0);
+    CHECK(outcome.n_tasks == 1);
+    return outcome.seconds / static_cast<double>(outcome.count.n_boards);
+  };
+  CHECK(seconds(10, false) == Approx(6e-9).epsilon(0.1));
+  CHECK(seconds(16, true) == Approx(6e-9).epsilon(0.1));
+}
+
 TEST_CASE("with priorities one PE looks at few boards that one serial search would not",
           "[apps][nqueens]") {
   std::uint64_t serial = 0;
