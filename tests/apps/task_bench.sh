@@ -66,6 +66,11 @@ done
 fails 1 "wrong input" "$bin" -steps 20 -width 8 -type stencil_1d -output 64 --spoil 12,4 --sim pes=3
 fails 1 "wrong input" "${mpirun[@]}" -n 2 "$bin" -steps 20 -width 8 -type fft --spoil 12,4 --pes 1
 
+# With -type all the types after the first have the task, and those whose period does not fit are found before anything runs.
+fails 1 "wrong input" "$bin" -metg -type all -steps 20 --spoil 12,3 --pes 2
+fails 2 "no graph has a task" "$bin" -metg -type all -steps 20 --spoil 19,3 --pes 2
+fails 2 "at most 1 for spread" "$bin" -metg -type all -width 4 -radix 4 --pes 2
+
 # The iterations that were run count, not those that were asked for: what is not kernels is the cost of messages, at every
 # grain the same.
 "$bin" -metg -type trivial -steps 200 -kernel load_imbalance -imbalance 2 -persistent --repeat 1 --sim pes=1,cost=100ns \
