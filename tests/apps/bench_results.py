@@ -38,6 +38,17 @@ with tempfile.TemporaryDirectory() as into:
     assert places == {("1", "1"), ("2", "1"), ("2", "2")}, places
     assert "_tessera_" in path.name, path
 
+# A run that fails leaves no file, though the runs before and after it have rows.
+with tempfile.TemporaryDirectory() as folder:
+    fake, into = pathlib.Path(folder, "bin"), pathlib.Path(folder, "into")
+    fake.mkdir()
+    into.mkdir()
+    (fake / "bench").write_text("#!/bin/sh\n[ \"$2\" = 2 ] && exit 3\nexec '%s/bench' \"$@\"\n" % built)
+    (fake / "bench").chmod(0o755)
+    done = subprocess.run(["bash", root / "apps/bench/keep.sh", "--built", fake, "--into", into, "--quick", "message"],
+                          stdout=subprocess.DEVNULL)
+    assert done.returncode == 3 and not list(into.iterdir()), (done.returncode, list(into.iterdir()))
+
 # A time of a particle's step has no limit; a share, of two times of the same run, has one.
 table = subprocess.run([built + "/bench_dn_field", "--particles", "20000", "--repeat", "1", "--only", "impact"], check=True,
                        text=True, stdout=subprocess.PIPE).stdout
