@@ -49,6 +49,12 @@ with tempfile.TemporaryDirectory() as folder:
                           stdout=subprocess.DEVNULL)
     assert done.returncode == 3 and not list(into.iterdir()), (done.returncode, list(into.iterdir()))
 
+# monitor_cost.sh ends if its run does not start.
+with tempfile.TemporaryDirectory() as fake:
+    done = subprocess.run(["bash", root / "apps/bench/monitor_cost.sh", "--built", fake, "--seconds", "1"], text=True,
+                          stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, timeout=60)
+    assert done.returncode == 1 and "the run ended before it could be watched" in done.stderr, done
+
 # A time of a particle's step has no limit; a share, of two times of the same run, has one.
 table = subprocess.run([built + "/bench_dn_field", "--particles", "20000", "--repeat", "1", "--only", "impact"], check=True,
                        text=True, stdout=subprocess.PIPE).stdout
