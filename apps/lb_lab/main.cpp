@@ -44,7 +44,8 @@ void add_options(apps::CommandLine& line, Settings& s) {
               "bytes that a PE's chares may need: one number, or one per PE; 0: any")
       .separated_by(',');
   line.option("--seed", s.seed, "of random workloads and strategies");
-  line.option("--cell-bytes", s.cell_bytes, "bytes that migrate with a chare at the finest cut")
+  line.option("--cell-bytes", s.cell_bytes,
+              "bytes that migrate with a chare at the finest cut; a cell has whole words of 8")
       .between(0, 1 << 30);
   line.option("--message-bytes", s.message_bytes, "bytes to each neighbour per iteration")
       .between(0, 1 << 30);

@@ -94,7 +94,8 @@ Problem problem_of(const Settings& s, std::uint32_t workload, std::int32_t n_pes
   p.seed = s.seed;
   p.cell_seconds =
       parse_time("--grain", s.grain) * n_finest / static_cast<double>(p.domain.n_cells());
-  p.cell_bytes = s.cell_bytes;
+  p.cell_bytes = s.cell_bytes * static_cast<std::uint64_t>(n_finest) /
+                 static_cast<std::uint64_t>(p.domain.n_cells());
   p.message_bytes = s.message_bytes;
   return p;
 }
