@@ -274,6 +274,10 @@ refuses --nonsense "${lab[@]}" --nonsense
 refuses --snapshot-format "${lab[@]}" --snapshot-format zip
 refuses "3 limits for 4 PEs" "${lab[@]}" --memory-limit 1,2,3
 
+refuses "there is no nonsense; choose of all" "${lab[@]}" --workload all,nonsense
+refuses gredy "${lab[@]}" --strategy all,gredy
+refuses gredy "${replays[@]}" --replay "$scratch/missing.json" --strategy all,gredy
+
 # Compressed snapshots: truncated, damaged, not compressed, and 67 bytes that unpack to 70 MB.
 "$bin/lb_lab" --sim pes=2,cost=1us --strategy greedy --per-pe 4 --iterations 4 --period 2 --save-snapshot "$scratch/saved" >/dev/null || fail "--save-snapshot"
 saved=$scratch/saved/linear-4-greedy/data.0.json.br

@@ -101,7 +101,9 @@ std::string line_of(const nlohmann::ordered_json& row) {
 }  // namespace
 
 Replayed replay(const Settings& s) {
-  (void)tess::balance::parse_fold(s.fold);  // before files are read
+  // Before files are read.
+  (void)tess::balance::parse_fold(s.fold);
+  require_strategies(s);
   const bool all = std::ranges::count(s.strategies, "all") > 0;
   const std::vector<std::string>& names = all ? tess::balance::strategy_names() : s.strategies;
   Replayed out;
