@@ -6,6 +6,7 @@
 #include "apps/lb_lab/output/report.hpp"
 #include "apps/lb_lab/sweep.hpp"
 #include "apps/lb_lab/workload/kernel.hpp"
+#include "apps/plot/file_names.hpp"
 #include "apps/plot/write_file.hpp"
 #include "apps/wrong_answer.hpp"
 #include "runtime/runtime.hpp"
@@ -104,6 +105,10 @@ int start(tess::Setup& setup, int argc, char** argv) {
     return 0;
   }
   require_one_purpose(line, !settings.replay.empty());
+  plot::FileNames names;
+  for (const std::string& file : replay_files(settings.replay)) names.reads("--replay", file);
+  names.writes("--trace", setup.options.trace);
+  names.writes("--json", settings.json);
   if (!settings.replay.empty()) {
     plot::require_writable("--json", settings.json);
     const Replayed replayed = replay(settings);

@@ -284,6 +284,12 @@ saved=$scratch/saved/linear-4-greedy/data.0.json.br
 head -c $(($(stat -c %s "$saved") / 2)) "$saved" >"$scratch/cut.json.br"
 refuses "cut.json.br: is truncated" "${replays[@]}" --replay "$scratch/cut.json.br"
 { head -c 40 "$saved"; printf '\xff\xff\xff\xff\xff\xff\xff\xff'; tail -c +49 "$saved"; } >"$scratch/damaged.json.br"
+cp "$saved" "$scratch/kept.json.br"
+refuses "--json .*kept.json.br would overwrite --replay" "${replays[@]}" --replay "$scratch/kept.json.br" --json "$scratch/./kept.json.br"
+refuses "data.0.json.br would overwrite --replay" "${replays[@]}" --replay "${saved%/*}" --json "$saved"
+cmp -s "$saved" "$scratch/kept.json.br" && pass || fail "a snapshot that is replayed was overwritten"
+refuses "--json .*rows would overwrite --trace" "$bin/lb_lab" --sim pes=4 --json "$scratch/rows" --trace "$scratch/rows"
+refuses "--json .*rows would overwrite --trace" "$bin/bench" --pes 1 --json "$scratch/rows" --trace "$scratch/rows" --quick message
 refuses "damaged.json.br: " "${replays[@]}" --replay "$scratch/damaged.json.br"
 echo '{"phases": []}' >"$scratch/plain.json.br"
 refuses "plain.json.br: is damaged, or not compressed" "${replays[@]}" --replay "$scratch/plain.json.br"
