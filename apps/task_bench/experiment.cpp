@@ -1,5 +1,6 @@
 #include "apps/task_bench/experiment.hpp"
 
+#include "apps/median.hpp"
 #include "apps/wrong_answer.hpp"
 
 #include <algorithm>
@@ -113,8 +114,7 @@ tess::Task Bench::measure(std::optional<std::int64_t> iterations, Row* row) {
     co_await run(iterations, &seconds);
     all.push_back(seconds);
   }
-  std::ranges::sort(all);
-  *row = row_of(iterations, settings_.fastest ? all.front() : all[all.size() / 2]);
+  *row = row_of(iterations, settings_.fastest ? std::ranges::min(all) : apps::median(all));
 }
 
 tess::Task Bench::measure_all(Result* result) {
