@@ -5,6 +5,7 @@
 """
 import csv
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
@@ -48,6 +49,17 @@ with tempfile.TemporaryDirectory() as folder:
     done = subprocess.run(["bash", root / "apps/bench/keep.sh", "--built", fake, "--into", into, "--quick", "message"],
                           stdout=subprocess.DEVNULL)
     assert done.returncode == 3 and not list(into.iterdir()), (done.returncode, list(into.iterdir()))
+
+# predict.py runs its six cases on three machines. It reads the times of a transfer more exactly than the printed table has
+# them, in steps of 0.1 ms.
+with tempfile.TemporaryDirectory() as folder:
+    machine = pathlib.Path(folder, "here.sim")
+    machine.write_text("latency=1us\noverhead=100ns\n")
+    said = subprocess.run(["python3", root / "apps/bench/predict.py", machine, "--built", built, "--quick"], check=True, text=True,
+                          stdout=subprocess.PIPE).stdout
+    assert len(re.findall(r"[-+][\d.]+%$", said, re.M)) == 18, said
+    times = re.findall(r"m2m_transfer.*? ([\d.]+) +\d+% +([\d.]+) +\d+% ", said)
+    assert len(times) == 3 and not all(time.endswith("00") for both in times for time in both), said
 
 # monitor_cost.sh ends if its run does not start.
 with tempfile.TemporaryDirectory() as fake:
