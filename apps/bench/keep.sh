@@ -7,6 +7,7 @@
 # --built: the folder of the programs (default: build/release/bin). --program: another one than bench, of one process and one
 # PE; its name stands in that of the file. The rest is passed to the program.
 set -euo pipefail
+shopt -s inherit_errexit # a run that fails ends the script, also within $(…)
 root=$(cd "$(dirname "$0")/../.." && pwd)
 built=$root/build/release/bin into=$root/apps/bench/results
 arguments=() program=bench
@@ -24,6 +25,9 @@ if ((EUID == 0)); then mpirun+=(--allow-run-as-root); fi
 
 model=$(sed -n 's/^model name[^:]*: *//p' /proc/cpuinfo | head -1)
 machine="$(nproc) cores of ${model:-an unnamed processor}"
+# "Embree 3.13.5's rtcCollide …" in the list of rows, which not every program has.
+version_of() { "$built/$program" --list | sed -n "s/.* $1 \([0-9.]*\)'s .*/\1/p" | head -1 || true; }
+embree=$(version_of Embree) fcl=$(version_of FCL)
 if [[ $program == bench ]]; then
   kept=tessera
   rows=$(
@@ -35,16 +39,13 @@ else
   kept=tessera_$program
   rows=$("$built/$program" "${arguments[@]}")
 fi
-# "Embree 3.13.5's rtcCollide …" in the list of rows.
-version_of() { "$built/$program" --list | sed -n "s/.* $1 \([0-9.]*\)'s .*/\1/p" | head -1; }
-embree=$(version_of Embree) fcl=$(version_of FCL)
 mkdir -p "$into"
 part=$(mktemp "$into/part.XXXXXX")
 trap 'rm -f "$part"' EXIT
 # bench's last three columns are its machine (in quotes), preset and commit.
 awk -v machine="$machine" -v date="$(date +%F)" -v embree="$embree" -v fcl="$fcl" '
   BEGIN { print "name,median,unit,pes,ranks,system,version,machine,date,note" }
-  /^name,/ { next }
+  /^(name,|#)/ { next }
   {
     split($0, halves, "\"")
     n = split(halves[1], a, ",")

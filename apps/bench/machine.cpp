@@ -3,6 +3,7 @@
 //
 //     bench_machine               pool, one way between two PEs of a process, small posts
 //     mpirun -n 2 bench_machine   one way between two ranks, and plain MPI in the same run
+#include "apps/median.hpp"
 #include "runtime/base/pool.hpp"
 #include "runtime/core/check.hpp"
 #include "runtime/machine/mpi.hpp"
@@ -25,10 +26,10 @@ double nanoseconds(Clock::duration span) {
   return std::chrono::duration<double, std::nano>(span).count();
 }
 
-void report(const char* what, std::vector<double> ns) {
-  std::sort(ns.begin(), ns.end());
-  fmt::print("{:<48} {:9.1f} ns   ({:.1f} to {:.1f}, {} runs)\n", what, ns[ns.size() / 2],
-             ns.front(), ns.back(), ns.size());
+void report(const char* what, const std::vector<double>& ns) {
+  const auto [least, greatest] = std::minmax_element(ns.begin(), ns.end());
+  fmt::print("{:<48} {:9.1f} ns   ({:.1f} to {:.1f}, {} runs)\n", what, apps::median(ns), *least,
+             *greatest, ns.size());
 }
 
 constexpr int n_runs = 9;

@@ -6,6 +6,7 @@
 #include "apps/bench/calibrate/calibrate.hpp"
 #include "apps/bench/shapes/shapes.hpp"
 #include "apps/command_line.hpp"
+#include "apps/plot/file_names.hpp"
 #include "apps/plot/write_file.hpp"
 
 #include <algorithm>
@@ -100,6 +101,10 @@ int main(int argc, char** argv) {
     if (!calibrated.empty())
       line.refuse_beside("--calibrate " + calibrated, {"NAME", "--repeat", "--list", "--json"});
     plot::require_writable("--json", options.json);
+    plot::FileNames names;
+    names.writes("--trace", setup.options.trace);
+    names.writes("--json", options.json);
+    names.writes("--calibrate", calibrated);
 
     bench::Bench bench(options, command_line, *setup.machine);
     if (!calibrated.empty()) {

@@ -43,7 +43,13 @@ watched() {
   local at= end
   "${stencil[@]}" --steps 1000000 --monitor 0 >"$scratch/steps" 2>"$scratch/lines" &
   local run=$!
-  until at=$(grep -o '127.0.0.1:[0-9]*' "$scratch/lines"); do sleep 0.02; done
+  until at=$(grep -o '127.0.0.1:[0-9]*' "$scratch/lines"); do
+    if ! kill -0 "$run" 2>/dev/null; then
+      echo "monitor_cost: error: the run ended before it could be watched: $(tail -1 "$scratch/lines")" >&2
+      exit 1
+    fi
+    sleep 0.02
+  done
   sleep 1
   end=$((SECONDS + budget))
   while ((SECONDS < end)); do

@@ -9,25 +9,29 @@ percent. --recalibrate calibrates anew before each turn, for a machine whose cor
 FILE is written. --quick runs small problems once: to try out, not to measure. Run it on an idle machine: the load is printed.
 """
 import argparse
+import functools
+import json
+import operator
 import os
 import pathlib
 import re
 import statistics
 import subprocess
 import sys
+import tempfile
 
 STENCIL = r"steps: ([\d.]+) s"
 TASKS = r"Elapsed Time ([\d.e+-]+) seconds"
-TRANSFER = r"\n  seconds .*\n.*?([\d.]+)\n"  # the last column, transfer
 LABORATORY = r"\n\S+ +\d+ greedy_refine +([\d.]+)"
+TRANSFER = ["pairs", 0, "seconds", "transfer"]  # in the file of --json: the printed table has steps of 0.1 ms
 
-# Name, program with options, with --quick, where the seconds stand in its output.
+# Name, program with options, with --quick, where the seconds stand: a pattern of its output, or a place in its JSON.
 CASES = [
     ("stencil, 16 points per block", "stencil --size 64 --blocks 16 --steps 2000", "stencil --size 16 --blocks 4 --steps 20", STENCIL),
     ("stencil, 4096 points per block", "stencil --size 512 --blocks 8 --steps 2000", "stencil --size 32 --blocks 2 --steps 20", STENCIL),
     ("task_bench, stencil_1d, empty tasks", "task_bench -type stencil_1d -width 32 -steps 10000", "task_bench -steps 20", TASKS),
     ("task_bench, spread, 1 KiB outputs", "task_bench -type spread -radix 5 -width 32 -steps 3000 -output 1024",
-     "task_bench -type spread -steps 20", TASKS),
+     "task_bench -type spread -width 8 -steps 20", TASKS),
     ("m2m_transfer, 24 576 tetrahedra", "m2m_transfer kuhn:16@0.2 kuhn:17 --field sin", "m2m_transfer kuhn:3 kuhn:4 --field sin", TRANSFER),
     ("lb_lab, linear_comm, greedy_refine",
      "lb_lab --workload linear_comm --per-pe 8 --strategy greedy_refine --iterations 200 --period 20 --grain 100us",
@@ -56,13 +60,20 @@ def arguments():
     return given
 
 
-def seconds_of(command, pattern):
-    done = subprocess.run(command, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=600)
-    found = re.search(pattern, done.stdout)
-    if done.returncode != 0 or found is None:
-        sys.exit(f"predict.py: {' '.join(command)}: exit code {done.returncode}, {'no time in' if found is None else ''} its output:\n"
+def seconds_of(command, place):
+    with tempfile.TemporaryDirectory() as scratch:
+        rows = pathlib.Path(scratch, "rows.json")
+        written = [] if isinstance(place, str) else ["--json", str(rows)]
+        done = subprocess.run(command + written, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=600)
+        seconds = 0.0
+        if written and rows.exists():
+            seconds = functools.reduce(operator.getitem, place, json.loads(rows.read_text()))
+        elif not written and (found := re.search(place, done.stdout)):
+            seconds = float(found.group(1))
+    if done.returncode != 0 or not seconds > 0:
+        sys.exit(f"predict.py: {' '.join(command)}: exit code {done.returncode}, {'' if seconds > 0 else 'no time above 0 in '}its output:\n"
                  + done.stdout + done.stderr)
-    return float(found.group(1))
+    return seconds
 
 
 def calibrate(start, n_pes, given):
@@ -82,7 +93,7 @@ def main():
     print("load before:", *(f"{load:.2f}" for load in os.getloadavg()))
     print(f"{'':<38} {'':<8} {'measured ms':>12} {'spread':>7} {'predicted ms':>13} {'spread':>7} {'differs':>8}")
     worst = 0.0
-    for name, full, quick, pattern in CASES:
+    for name, full, quick, place in CASES:
         if given.only not in name:
             continue
         program, *options = (quick if given.quick else full).split()
@@ -93,11 +104,11 @@ def main():
             for _ in range(1 if given.quick else given.repeat):
                 if given.recalibrate and n_pes * n_processes == 2:
                     calibrate(start, n_pes, given)
-                measured.append(seconds_of(start + command + ["--pes", str(n_pes)], pattern))
-                predicted.append(seconds_of(command + ["--sim", f"file={given.file},{simulated}"], pattern))
+                measured.append(seconds_of(start + command + ["--pes", str(n_pes)], place))
+                predicted.append(seconds_of(command + ["--sim", f"file={given.file},{simulated}"], place))
             middle = [statistics.median(times) for times in (measured, predicted)]
-            spread = [100 * (max(times) - min(times)) / m if m > 0 else 0 for times, m in zip((measured, predicted), middle)]
-            differs = 100 * (middle[1] / middle[0] - 1) if middle[0] > 0 else 0
+            spread = [100 * (max(times) - min(times)) / m for times, m in zip((measured, predicted), middle)]
+            differs = 100 * (middle[1] / middle[0] - 1)
             worst = max(worst, abs(differs))
             print(f"{name:<38} {machine:<8} {1e3 * middle[0]:>12.3f} {spread[0]:>6.0f}% {1e3 * middle[1]:>13.3f} {spread[1]:>6.0f}% "
                   f"{differs:>+7.1f}%", flush=True)

@@ -1,6 +1,7 @@
 #include "apps/bench/report.hpp"
 
 #include "apps/bench/build.hpp"
+#include "apps/median.hpp"
 #include "runtime/run.hpp"
 #include "runtime/scheduler/pe.hpp"
 
@@ -24,10 +25,7 @@ double Stopwatch::nanoseconds() const {
 }
 
 double Samples::median() const {
-  std::vector<double> sorted = values_;
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-  std::nth_element(sorted.begin(), middle, sorted.end());
-  return *middle;
+  return apps::median(values_);
 }
 double Samples::least() const {
   return *std::min_element(values_.begin(), values_.end());

@@ -1,6 +1,7 @@
 #include "apps/collide_scaling/case.hpp"
 
 #include "apps/collide_scaling/pieces.hpp"
+#include "apps/median.hpp"
 #include "collide/collider.hpp"
 #include "runtime/balance.hpp"
 #include "runtime/machine/simulated.hpp"
@@ -10,6 +11,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
+#include <utility>
 
 namespace collide_scaling {
 namespace {
@@ -70,11 +72,6 @@ void charge_and_send(const tess::Callback<Hits>& callback, Hits&& hits) {
 const tess::Callback<Hits>::Kind charged_owner{tess::naming::name_of<&charge_and_send>(),
                                                &charge_and_send};
 
-double median(std::vector<double> values) {
-  std::ranges::sort(values);
-  return values[values.size() / 2];
-}
-
 tess::Task run_steps(const Case& given, Row& row) {
   Collider collider;
   tess::GroupProxy<Client> clients;
@@ -116,7 +113,7 @@ tess::Task run_steps(const Case& given, Row& row) {
   const auto median_of = [&](double StepTimes::*member) {
     std::vector<double> values;
     for (const StepTimes& step : steps) values.push_back(step.*member);
-    return median(values);
+    return apps::median(std::move(values));
   };
   row.step = {median_of(&StepTimes::seconds), median_of(&StepTimes::first_hits),
               median_of(&StepTimes::last_hits), median_of(&StepTimes::searched),

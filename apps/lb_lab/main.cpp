@@ -6,6 +6,7 @@
 #include "apps/lb_lab/output/report.hpp"
 #include "apps/lb_lab/sweep.hpp"
 #include "apps/lb_lab/workload/kernel.hpp"
+#include "apps/plot/file_names.hpp"
 #include "apps/plot/write_file.hpp"
 #include "apps/wrong_answer.hpp"
 #include "runtime/runtime.hpp"
@@ -44,7 +45,8 @@ void add_options(apps::CommandLine& line, Settings& s) {
               "bytes that a PE's chares may need: one number, or one per PE; 0: any")
       .separated_by(',');
   line.option("--seed", s.seed, "of random workloads and strategies");
-  line.option("--cell-bytes", s.cell_bytes, "bytes that migrate with a chare at the finest cut")
+  line.option("--cell-bytes", s.cell_bytes,
+              "bytes that migrate with a chare at the finest cut; a cell has whole words of 8")
       .between(0, 1 << 30);
   line.option("--message-bytes", s.message_bytes, "bytes to each neighbour per iteration")
       .between(0, 1 << 30);
@@ -103,6 +105,10 @@ int start(tess::Setup& setup, int argc, char** argv) {
     return 0;
   }
   require_one_purpose(line, !settings.replay.empty());
+  plot::FileNames names;
+  for (const std::string& file : replay_files(settings.replay)) names.reads("--replay", file);
+  names.writes("--trace", setup.options.trace);
+  names.writes("--json", settings.json);
   if (!settings.replay.empty()) {
     plot::require_writable("--json", settings.json);
     const Replayed replayed = replay(settings);

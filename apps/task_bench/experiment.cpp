@@ -1,5 +1,6 @@
 #include "apps/task_bench/experiment.hpp"
 
+#include "apps/median.hpp"
 #include "apps/wrong_answer.hpp"
 
 #include <algorithm>
@@ -86,12 +87,13 @@ Row Bench::row_of(std::optional<std::int64_t> iterations, double seconds) const 
     row.kernel += (k > 0 ? "+" : "") + name_of(graph.kernel.type);
     row.n_tasks += totals_[k].n_tasks;
     row.n_dependences += totals_[k].n_dependences;
+    Graph tried = graph;
+    tried.kernel.iterations = iterations.value_or(graph.kernel.iterations);
+    const auto n_tasks = static_cast<double>(totals_[k].n_tasks);
     // A kernel's time is linear in its iterations; where they are random, the drawn ones count.
-    const double asked =
-        static_cast<double>(totals_[k].n_tasks) * static_cast<double>(graph.kernel.iterations);
-    const double drawn = asked > 0 ? static_cast<double>(totals_[k].n_iterations) / asked : 1;
-    kernels += drawn * static_cast<double>(totals_[k].n_tasks) *
-               kernel_seconds(graph, iterations.value_or(graph.kernel.iterations));
+    const double asked = n_tasks * static_cast<double>(tried.kernel.iterations);
+    const double drawn = asked > 0 ? static_cast<double>(totals(tried).n_iterations) / asked : 1;
+    kernels += drawn * n_tasks * kernel_seconds(graph, tried.kernel.iterations);
   }
   row.width = graphs_.front().width;
   row.steps = graphs_.front().steps;
@@ -112,8 +114,7 @@ tess::Task Bench::measure(std::optional<std::int64_t> iterations, Row* row) {
     co_await run(iterations, &seconds);
     all.push_back(seconds);
   }
-  std::ranges::sort(all);
-  *row = row_of(iterations, settings_.fastest ? all.front() : all[all.size() / 2]);
+  *row = row_of(iterations, settings_.fastest ? std::ranges::min(all) : apps::median(all));
 }
 
 tess::Task Bench::measure_all(Result* result) {

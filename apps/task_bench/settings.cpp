@@ -208,11 +208,13 @@ class Parser {
         if (given.iterations) refuse("-metg tries numbers of iterations: leave -iter out");
       }
       if (!given.period && has_period(g.type)) g.period = 3;
-      if (!s.all_types) validate(g);
       s.graphs.push_back(g);
     }
-    if (s.spoiled && std::ranges::none_of(s.graphs, [&](const Graph& g) {
-          return is_read(g, s.spoiled->first, s.spoiled->second);
+    const std::vector<std::vector<Graph>> all = cases(s);
+    if (s.spoiled && std::ranges::none_of(all, [&](const std::vector<Graph>& graphs) {
+          return std::ranges::any_of(graphs, [&](const Graph& g) {
+            return is_read(g, s.spoiled->first, s.spoiled->second);
+          });
         }))
       refuse(
           fmt::format("--spoil {},{}: no graph has a task with this step and point whose output "
@@ -245,7 +247,10 @@ std::optional<Settings> parse(int argc, char** argv, const tess::Machine& machin
 }
 
 std::vector<std::vector<Graph>> cases(const Settings& settings) {
-  if (!settings.all_types) return {settings.graphs};
+  if (!settings.all_types) {
+    for (const Graph& graph : settings.graphs) validate(graph);
+    return {settings.graphs};
+  }
   std::vector<std::vector<Graph>> result;
   for (const std::string& name : type_names()) {
     Graph graph = settings.graphs.front();

@@ -31,7 +31,8 @@ struct Settings {
 /// cannot run on this machine.
 [[nodiscard]] std::optional<Settings> parse(int argc, char** argv, const tess::Machine& machine);
 
-/// The sets of graphs to run, one after the other: with -type all one per type.
+/// The sets of graphs to run, one after the other: with -type all one per type. Throws tess::Error
+/// if the options of one are inconsistent.
 [[nodiscard]] std::vector<std::vector<Graph>> cases(const Settings& settings);
 
 }  // namespace task_bench

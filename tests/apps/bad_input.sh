@@ -278,12 +278,22 @@ refuses --nonsense "${lab[@]}" --nonsense
 refuses --snapshot-format "${lab[@]}" --snapshot-format zip
 refuses "3 limits for 4 PEs" "${lab[@]}" --memory-limit 1,2,3
 
+refuses "there is no nonsense; choose of all" "${lab[@]}" --workload all,nonsense
+refuses gredy "${lab[@]}" --strategy all,gredy
+refuses gredy "${replays[@]}" --replay "$scratch/missing.json" --strategy all,gredy
+
 # Compressed snapshots: truncated, damaged, not compressed, and 67 bytes that unpack to 70 MB.
 "$bin/lb_lab" --sim pes=2,cost=1us --strategy greedy --per-pe 4 --iterations 4 --period 2 --save-snapshot "$scratch/saved" >/dev/null || fail "--save-snapshot"
 saved=$scratch/saved/linear-4-greedy/data.0.json.br
 head -c $(($(stat -c %s "$saved") / 2)) "$saved" >"$scratch/cut.json.br"
 refuses "cut.json.br: is truncated" "${replays[@]}" --replay "$scratch/cut.json.br"
 { head -c 40 "$saved"; printf '\xff\xff\xff\xff\xff\xff\xff\xff'; tail -c +49 "$saved"; } >"$scratch/damaged.json.br"
+cp "$saved" "$scratch/kept.json.br"
+refuses "--json .*kept.json.br would overwrite --replay" "${replays[@]}" --replay "$scratch/kept.json.br" --json "$scratch/./kept.json.br"
+refuses "data.0.json.br would overwrite --replay" "${replays[@]}" --replay "${saved%/*}" --json "$saved"
+cmp -s "$saved" "$scratch/kept.json.br" && pass || fail "a snapshot that is replayed was overwritten"
+refuses "--json .*rows would overwrite --trace" "$bin/lb_lab" --sim pes=4 --json "$scratch/rows" --trace "$scratch/rows"
+refuses "--json .*rows would overwrite --trace" "$bin/bench" --pes 1 --json "$scratch/rows" --trace "$scratch/rows" --quick message
 refuses "damaged.json.br: " "${replays[@]}" --replay "$scratch/damaged.json.br"
 echo '{"phases": []}' >"$scratch/plain.json.br"
 refuses "plain.json.br: is damaged, or not compressed" "${replays[@]}" --replay "$scratch/plain.json.br"

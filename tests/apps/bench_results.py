@@ -5,6 +5,7 @@
 """
 import csv
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
@@ -37,6 +38,34 @@ with tempfile.TemporaryDirectory() as into:
     places = {(row["pes"], row["ranks"]) for row in rows_of(path) if row["name"] == "message"}
     assert places == {("1", "1"), ("2", "1"), ("2", "2")}, places
     assert "_tessera_" in path.name, path
+
+# A run that fails leaves no file, though the runs before and after it have rows.
+with tempfile.TemporaryDirectory() as folder:
+    fake, into = pathlib.Path(folder, "bin"), pathlib.Path(folder, "into")
+    fake.mkdir()
+    into.mkdir()
+    (fake / "bench").write_text("#!/bin/sh\n[ \"$2\" = 2 ] && exit 3\nexec '%s/bench' \"$@\"\n" % built)
+    (fake / "bench").chmod(0o755)
+    done = subprocess.run(["bash", root / "apps/bench/keep.sh", "--built", fake, "--into", into, "--quick", "message"],
+                          stdout=subprocess.DEVNULL)
+    assert done.returncode == 3 and not list(into.iterdir()), (done.returncode, list(into.iterdir()))
+
+# predict.py runs its six cases on three machines. It reads the times of a transfer more exactly than the printed table has
+# them, in steps of 0.1 ms.
+with tempfile.TemporaryDirectory() as folder:
+    machine = pathlib.Path(folder, "here.sim")
+    machine.write_text("latency=1us\noverhead=100ns\n")
+    said = subprocess.run(["python3", root / "apps/bench/predict.py", machine, "--built", built, "--quick"], check=True, text=True,
+                          stdout=subprocess.PIPE).stdout
+    assert len(re.findall(r"[-+][\d.]+%$", said, re.M)) == 18, said
+    times = re.findall(r"m2m_transfer.*? ([\d.]+) +\d+% +([\d.]+) +\d+% ", said)
+    assert len(times) == 3 and not all(time.endswith("00") for both in times for time in both), said
+
+# monitor_cost.sh ends if its run does not start.
+with tempfile.TemporaryDirectory() as fake:
+    done = subprocess.run(["bash", root / "apps/bench/monitor_cost.sh", "--built", fake, "--seconds", "1"], text=True,
+                          stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, timeout=60)
+    assert done.returncode == 1 and "the run ended before it could be watched" in done.stderr, done
 
 # A time of a particle's step has no limit; a share, of two times of the same run, has one.
 table = subprocess.run([built + "/bench_dn_field", "--particles", "20000", "--repeat", "1", "--only", "impact"], check=True,

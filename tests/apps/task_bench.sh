@@ -66,6 +66,25 @@ done
 fails 1 "wrong input" "$bin" -steps 20 -width 8 -type stencil_1d -output 64 --spoil 12,4 --sim pes=3
 fails 1 "wrong input" "${mpirun[@]}" -n 2 "$bin" -steps 20 -width 8 -type fft --spoil 12,4 --pes 1
 
+# With -type all the types after the first have the task, and those whose period does not fit are found before anything runs.
+fails 1 "wrong input" "$bin" -metg -type all -steps 20 --spoil 12,3 --pes 2
+fails 2 "no graph has a task" "$bin" -metg -type all -steps 20 --spoil 19,3 --pes 2
+fails 2 "at most 1 for spread" "$bin" -metg -type all -width 4 -radix 4 --pes 2
+
+# The iterations that were run count, not those that were asked for: what is not kernels is the cost of messages, at every
+# grain the same.
+"$bin" -metg -type trivial -steps 200 -kernel load_imbalance -imbalance 2 -persistent --repeat 1 --sim pes=1,cost=100ns \
+  --json "$scratch/drawn.json" >"$scratch/out" 2>&1
+python3 - "$scratch/drawn.json" <<'PYTHON' && pass || fail "efficiency of drawn iterations"
+import json, sys
+(result,) = json.load(open(sys.argv[1]))["results"]
+rows = result["rows"]
+assert len(rows) > 3, rows
+rest = [row["seconds"] * (1 - row["efficiency"]) for row in rows]
+for row, one in zip(rows, rest):
+    assert row["efficiency"] < 1 and abs(one - rest[0]) < 0.01 * rest[0] + 1e-5 * row["seconds"], (rows, rest)
+PYTHON
+
 # Virtual time is exact: 100 ns per message, with one message per task of trivial and two of stencil_1d.
 "$bin" -metg -type all -steps 200 --sim pes=4,cost=100ns,latency=0us --repeat 1 --json "$scratch/m.json" \
   --csv "$scratch/rows.csv" --plot "$scratch/m.svg" >"$scratch/out" 2>&1

@@ -55,7 +55,7 @@ Assembly assembled(Problem problem, std::uint64_t seed) {
   problem.n_parts = 1 + static_cast<std::int32_t>(seed % 5);
   const test::Machine machine{.pes = 1 + static_cast<int>(seed % 4), .seed = seed};
   Assembly out;
-  machine.run([&]() -> Task { return overset::assemble(problem, out); }).require_success();
+  machine.run([&]() -> Task { out = co_await overset::assemble(problem); }).require_success();
   return out;
 }
 

@@ -12,9 +12,7 @@ class Lake : public tess::Chare<Lake> {
 };
 
 tess::TaskOf<double> mean_level(tess::ArrayProxy<Lake> lakes) {
-  tess::Future<double> sum;
-  lakes.broadcast<&Lake::level>(sum.callback());
-  const double of_all = co_await sum;
+  const double of_all = co_await lakes.reduce<&Lake::level>();
   co_return of_all / lakes.size();
 }
 

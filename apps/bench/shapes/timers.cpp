@@ -34,7 +34,8 @@ tess::Task measure_timers(const Bench& bench, bool busy, Late& late) {
   if (busy) workers[{0}].send<&Busy::work>();
   const int n_timers = bench.size(100, 5);
   for (std::int32_t turn = 0; turn <= bench.repeat(); ++turn) {
-    std::vector<double> microseconds;
+    Samples microseconds;
+    double worst = 0;
     for (int i = 0; i < n_timers; ++i) {
       tess::Future<std::int64_t> done;
       const std::int64_t begin = tess::current_pe().now().count();
@@ -43,12 +44,12 @@ tess::Task measure_timers(const Bench& bench, bool busy, Late& late) {
       const std::int64_t end = co_await done;
       const double micros = 1e-3 * static_cast<double>(end - begin) - 1000;
       TESS_CHECK(micros >= 0, "a timer was ", -micros, " us early");
-      microseconds.push_back(micros);
+      microseconds.add(micros);
+      worst = std::max(worst, micros);
     }
     if (turn == 0) continue;
-    std::sort(microseconds.begin(), microseconds.end());
-    late.median.add(microseconds[microseconds.size() / 2]);
-    late.worst.add(microseconds.back());
+    late.median.add(microseconds.median());
+    late.worst.add(worst);
   }
   workers[{0}].send<&Busy::rest>();
 }

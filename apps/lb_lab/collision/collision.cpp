@@ -80,7 +80,7 @@ std::string describe_collision(const Problem& p) {
 
 }  // namespace
 
-const Kind collision_kind{&serial_answer_of_collision, &nominal_seconds, &describe_collision,
-                          &run_collision};
+const Kind collision_kind{Speeds::relative, &serial_answer_of_collision, &nominal_seconds,
+                          &describe_collision, &run_collision};
 
 }  // namespace lb_lab

@@ -36,28 +36,6 @@ Snapshot prepared(const Settings& s, Snapshot snapshot) {
   return snapshot;
 }
 
-/// The files as given, and of a folder all of its LBDatafiles, in the order of their names.
-std::vector<std::string> files_of(const std::vector<std::string>& given) {
-  std::vector<std::string> files;
-  for (const std::string& path : given) {
-    std::error_code none;
-    if (!std::filesystem::is_directory(path, none)) {
-      files.push_back(path);
-      continue;
-    }
-    const std::size_t n_before = files.size();
-    for (const auto& entry : std::filesystem::directory_iterator(path))
-      if (const std::string name = entry.path().string();
-          name.ends_with(".json") || name.ends_with(".json.br"))
-        files.push_back(name);
-    if (files.size() == n_before)
-      tess::fail(tess::ErrorCode::bad_argument, "--replay: the folder ", path,
-                 " has no file named *.json or *.json.br; give LBDatafiles, or their folder");
-    std::sort(files.begin() + static_cast<std::ptrdiff_t>(n_before), files.end());
-  }
-  return files;
-}
-
 /// What a strategy makes of a phase.
 nlohmann::ordered_json row(std::uint64_t phase, const Snapshot& snapshot, const std::string& name,
                            std::uint64_t seed) {
@@ -100,8 +78,31 @@ std::string line_of(const nlohmann::ordered_json& row) {
 
 }  // namespace
 
+std::vector<std::string> replay_files(const std::vector<std::string>& given) {
+  std::vector<std::string> files;
+  for (const std::string& path : given) {
+    std::error_code none;
+    if (!std::filesystem::is_directory(path, none)) {
+      files.push_back(path);
+      continue;
+    }
+    const std::size_t n_before = files.size();
+    for (const auto& entry : std::filesystem::directory_iterator(path))
+      if (const std::string name = entry.path().string();
+          name.ends_with(".json") || name.ends_with(".json.br"))
+        files.push_back(name);
+    if (files.size() == n_before)
+      tess::fail(tess::ErrorCode::bad_argument, "--replay: the folder ", path,
+                 " has no file named *.json or *.json.br; give LBDatafiles, or their folder");
+    std::sort(files.begin() + static_cast<std::ptrdiff_t>(n_before), files.end());
+  }
+  return files;
+}
+
 Replayed replay(const Settings& s) {
-  (void)tess::balance::parse_fold(s.fold);  // before files are read
+  // Before files are read.
+  (void)tess::balance::parse_fold(s.fold);
+  require_strategies(s);
   const bool all = std::ranges::count(s.strategies, "all") > 0;
   const std::vector<std::string>& names = all ? tess::balance::strategy_names() : s.strategies;
   Replayed out;
@@ -111,7 +112,8 @@ Replayed replay(const Settings& s) {
                   "external bytes", "strategy ms", "fullest PE", "over limit");
   nlohmann::ordered_json root = {{"rows", nlohmann::ordered_json::array()},
                                  {"left_out", nlohmann::ordered_json::array()}};
-  std::vector<tess::balance::Phase> phases = tess::balance::read_lb_datafiles(files_of(s.replay));
+  std::vector<tess::balance::Phase> phases =
+      tess::balance::read_lb_datafiles(replay_files(s.replay));
   std::map<std::pair<std::string, std::string>, std::size_t> left_out;  // phases per name, reason
   for (tess::balance::Phase& phase : phases) {
     const Snapshot snapshot = prepared(s, std::move(phase.snapshot));

@@ -4,6 +4,7 @@
 #include "apps/lb_lab/run/settings.hpp"
 
 #include <string>
+#include <vector>
 
 namespace lb_lab {
 
@@ -11,6 +12,10 @@ namespace lb_lab {
 struct Replayed {
   std::string table, json;
 };
+
+/// The files of --replay: as given, and of a folder all of its LBDatafiles, in the order of their
+/// names. Throws tess::Error for a folder without any.
+[[nodiscard]] std::vector<std::string> replay_files(const std::vector<std::string>& given);
 
 /// Reads the files of one run and gives each phase to each strategy: predicted imbalance, moves,
 /// bytes, time and memory. `all` leaves out, and says so at the end, the strategies

@@ -6,11 +6,13 @@
 #include "runtime/balance/strategy.hpp"
 #include "runtime/run.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
+#include <numeric>
 
 namespace lb_lab {
 namespace {
@@ -108,11 +110,14 @@ std::string explain_text(const Settings& s, std::int32_t n_pes) {
   for (const std::string& name : s.workloads) {
     const Problem p = problem_of(s, find_workload(name), n_pes);
     const double total = total_seconds(p);
-    double speed = n_pes;  // in that of the fastest PE, which works at full speed
-    if (!s.speeds.empty()) speed = 0;
-    for (const double one : s.speeds) speed += one / std::ranges::max(s.speeds);
+    const Kind& kind = *workload_of(p).kind;
+    double speed = n_pes;
+    if (!s.speeds.empty()) {
+      speed = std::reduce(s.speeds.begin(), s.speeds.end());
+      if (kind.speeds == Speeds::relative) speed /= std::ranges::max(s.speeds);
+    }
     out += fmt::format("{}: {}; {:.4g} s of work, {:.4g} s at best on {} PEs\n", name,
-                       workload_of(p).kind->describe(p), total, total / speed, n_pes);
+                       kind.describe(p), total, total / speed, n_pes);
   }
   out += fmt::format("{} runs of {} iterations",
                      s.workloads.size() * s.per_pe.size() * s.strategies.size() *

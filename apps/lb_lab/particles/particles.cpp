@@ -82,7 +82,7 @@ std::string describe_particles(const Problem& p) {
 
 }  // namespace
 
-const Kind particles_kind{&serial_answer_of_particles, &nominal_seconds, &describe_particles,
-                          &run_particles};
+const Kind particles_kind{Speeds::relative, &serial_answer_of_particles, &nominal_seconds,
+                          &describe_particles, &run_particles};
 
 }  // namespace lb_lab

@@ -6,11 +6,19 @@
 #include "apps/lb_lab/run/experiment.hpp"
 #include "apps/lb_lab/workload/workload.hpp"
 
+#include <cstdint>
 #include <string>
 
 namespace lb_lab {
 
+/// What the speeds of PEs mean.
+enum class Speeds : std::uint8_t {
+  given,     ///< work of given seconds takes a PE these seconds over its speed
+  relative,  ///< the fastest PE works as fast as it can, and slower ones take longer
+};
+
 struct Kind {
+  Speeds speeds = Speeds::given;
   /// The answer, computed without chares and messages.
   std::uint64_t (*serial_answer)(const Problem&) = nullptr;
   /// Seconds at speed 1 of all iterations: exact for cells, nominal for real work.

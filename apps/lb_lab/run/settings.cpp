@@ -35,11 +35,13 @@ void expand_names(Settings& s) {
   refuse_repeated("--workload", s.workloads);
   refuse_repeated("--per-pe", s.per_pe);
   refuse_repeated("--strategy", s.strategies);
+  for (const std::string& name : s.workloads)
+    if (name != "all") (void)find_workload(name);
+  require_strategies(s);
   if (std::ranges::count(s.workloads, "all") > 0) {
     s.workloads.clear();
     for (const Workload& one : workloads()) s.workloads.push_back(one.name);
   }
-  for (const std::string& name : s.workloads) (void)find_workload(name);
   if (std::ranges::count(s.strategies, "all") > 0) {
     s.strategies.clear();
     for (const std::string& name : tess::balance::strategy_names()) {
@@ -50,7 +52,6 @@ void expand_names(Settings& s) {
   for (const std::string& name : s.strategies)
     if (const std::string why = obstacle(s, name); !why.empty())
       refuse("--strategy: ", name, ": ", why, "; choose another, or all, which leaves it out");
-  for (const std::string& name : s.strategies) (void)tess::balance::make_strategy(name, s.seed);
   // What is gained is gained over none.
   std::erase(s.strategies, "none");
   s.strategies.insert(s.strategies.begin(), "none");
@@ -65,6 +66,11 @@ double parse_time(std::string_view option, std::string_view value) {
   if (!(count * unit_seconds > 0) || count * unit_seconds > 1e6)
     refuse(option, ": ", value, " is not a time above 0; give 250us, 1ms, 0.5s or the like");
   return count * unit_seconds;
+}
+
+void require_strategies(const Settings& s) {
+  for (const std::string& name : s.strategies)
+    if (name != "all") (void)tess::balance::make_strategy(name, s.seed);
 }
 
 std::vector<std::uint64_t> limits_of_pes(const Settings& s, std::size_t n_pes) {
@@ -94,7 +100,8 @@ Problem problem_of(const Settings& s, std::uint32_t workload, std::int32_t n_pes
   p.seed = s.seed;
   p.cell_seconds =
       parse_time("--grain", s.grain) * n_finest / static_cast<double>(p.domain.n_cells());
-  p.cell_bytes = s.cell_bytes;
+  p.cell_bytes = s.cell_bytes * static_cast<std::uint64_t>(n_finest) /
+                 static_cast<std::uint64_t>(p.domain.n_cells());
   p.message_bytes = s.message_bytes;
   return p;
 }

@@ -39,6 +39,9 @@ struct Settings {
 /// settings that cannot be run on that many PEs.
 void complete(Settings& settings, std::int32_t n_pes);
 
+/// Throws tess::Error for a name that is no strategy's; `all` may stand among the names.
+void require_strategies(const Settings& settings);
+
 /// A limit for each PE, from none, one or all of them. Throws tess::Error for another number.
 [[nodiscard]] std::vector<std::uint64_t> limits_of_pes(const Settings& settings, std::size_t n_pes);
 

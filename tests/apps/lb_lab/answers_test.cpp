@@ -54,6 +54,19 @@ TEST_CASE("a walk returns to its word, after any number of steps", "[lb_lab]") {
   for (std::uint64_t n = 0; n < 1000; n += 7) CHECK(walk(n * n + 3, n) == n * n + 3);
 }
 
+TEST_CASE("a chare of the finest cut carries the bytes of --cell-bytes on lines and planes",
+          "[lb_lab]") {
+  for (const char* name : {"linear", "stencil"}) {
+    const Problem p = problem_of(small(), find_workload(name), 4);
+    std::size_t n_words = 0;
+    const Block block = p.domain.block(0);
+    for (std::int32_t y = 0; y < block.height; ++y)
+      for (std::int32_t x = 0; x < block.width; ++x)
+        n_words += cargo_of(p, {block.first.x + x, block.first.y + y}).size();
+    CHECK(8 * n_words == small().cell_bytes);
+  }
+}
+
 TEST_CASE("a missing neighbour changes the answer where the workload looks", "[lb_lab]") {
   Settings s = small();
   for (std::uint32_t w = 0; w < workloads().size(); ++w) {

@@ -8,6 +8,7 @@
 #include "tests/support/catch.hpp"
 
 #include <algorithm>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -108,6 +109,22 @@ TEST_CASE("a PE of half the speed gets half the work", "[lb_lab]") {
   const Sweep sweep = sweep_on("pes=4,cost=1us", s);
   CHECK(row_of(sweep, "none", 16).imbalance_before == Approx(2 * 3.5 / 4).epsilon(1e-3));
   CHECK(row_of(sweep, "greedy", 16).imbalance_after <= 1.05);
+}
+
+TEST_CASE("the least time that is explained counts speeds as the workload does", "[lb_lab]") {
+  Settings s = linear();
+  s.strategies = {"none"};
+  s.speeds = {2, 2};
+  const auto best_of_two = [&](const char* workload) {
+    s.workloads = {workload};
+    const std::string text = explain_text(s, 2);
+    double work = 0, best = 0;
+    REQUIRE(std::sscanf(text.c_str() + text.rfind("; ", text.find(" of work,")),
+                        "; %lf s of work, %lf", &work, &best) == 2);
+    return work / best;
+  };
+  CHECK(best_of_two("linear") == Approx(4).epsilon(1e-3));
+  CHECK(best_of_two("particles") == Approx(2).epsilon(1e-3));
 }
 
 TEST_CASE("automatic rounds lose next to nothing where nothing can be gained", "[lb_lab]") {
