@@ -24,8 +24,10 @@ void refuse_to_overwrite(const Scene& scene, const Options& options, const std::
   std::vector<fs::path> others{options.scene, options.json, trace};
   names.reads("SCENE", options.scene);
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
-    others.emplace_back(scene.objects[i].field);
-    names.reads(fmt::format("objects[{}].field", i), scene.objects[i].field);
+    const SceneObject& object = scene.objects[i];
+    for (const std::string& read : {object.field, object.file}) others.emplace_back(read);
+    names.reads(fmt::format("objects[{}].field", i), object.field);
+    names.reads(fmt::format("objects[{}].shape.file", i), object.file);
   }
   names.writes("--json", options.json);
   names.writes("--trace", trace);

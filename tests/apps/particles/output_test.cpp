@@ -173,6 +173,9 @@ TEST_CASE("a run replaces none of the files that it reads or writes", "[particle
     scene.objects[0].field = out + "/./" + file;
     CHECK_THAT(refusal(), Catch::Contains("would overwrite objects[0].field"));
     scene.objects[0].field.clear();
+    scene.objects[0].file = out + "/" + file;
+    CHECK_THAT(refusal(), Catch::Contains("would overwrite objects[0].shape.file"));
+    scene.objects[0].file.clear();
     options.json = out + "/" + file;
     CHECK_THAT(refusal(), Catch::Contains("would overwrite --json"));
     options.json.clear();
@@ -182,6 +185,22 @@ TEST_CASE("a run replaces none of the files that it reads or writes", "[particle
   CHECK_THAT(refusal(), Catch::Contains("would overwrite objects[0].field"));
   options.json.clear();
   prepare_files(scene, options, scratch.path("trace.json"));
+}
+
+TEST_CASE("the mesh that a scene reads is not overwritten", "[particles]") {
+  const tess::test::Scratch scratch;
+  const std::string mesh = scratch.write("mesh.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  const Scene scene =
+      with_object(R"({"sides": "two", "shape": {"file": ")" + mesh + R"("}})", R"({"slice": {}})");
+  CHECK(scene.objects[0].file == mesh);
+  const auto refusal = [&](const std::string& json, const std::string& trace) {
+    Options options;
+    options.json = json;
+    return tess::test::message_of([&] { prepare_files(scene, options, trace); });
+  };
+  CHECK_THAT(refusal(mesh, ""), Catch::Contains("would overwrite objects[0].shape.file"));
+  CHECK_THAT(refusal("", mesh), Catch::Contains("would overwrite objects[0].shape.file"));
+  CHECK(refusal(scratch.path("other.obj"), "").empty());
 }
 
 TEST_CASE("the shadow of a torus has its hole", "[particles]") {
