@@ -203,6 +203,26 @@ TEST_CASE("the mesh that a scene reads is not overwritten", "[particles]") {
   CHECK(refusal(scratch.path("other.obj"), "").empty());
 }
 
+TEST_CASE("a file that cannot be written is refused before the run", "[particles]") {
+  const tess::test::Scratch scratch;
+  Scene scene = with_object(R"({"shape": {"box": {"half": [1, 1, 1]}}})",
+                            R"({"slice": {}, "trajectories": 20})");
+  scene.outputs.fields = true;
+  Options options;
+  options.out = scratch.path("out");
+  options.study = true;
+  for (const char* file : {"field_0.dnf", "field.svg", "paths.svg", "trajectories.pvd",
+                           "study_distance.svg", "study_step.csv"}) {
+    CAPTURE(file);
+    const std::string taken = options.out + "/" + file;
+    std::filesystem::create_directories(taken);
+    CHECK_THAT(tess::test::message_of([&] { prepare_files(scene, options, {}); }),
+               Catch::Contains(taken + ": cannot be written: is a directory"));
+    std::filesystem::remove(taken);
+  }
+  prepare_files(scene, options, {});
+}
+
 TEST_CASE("the shadow of a torus has its hole", "[particles]") {
   const Scene scene = with_object(R"({"shape": {"torus": {"major": 1, "minor": 0.4}}})");
   const std::string svg = paths_svg(scene, {{0, {{0, {}, {}}}}, {1, {{0, {}, {}}}}});
