@@ -288,7 +288,7 @@ double largest(Vec3 size) {
 Bounds window_of(const Scene& scene, const std::vector<Snapshot>& snapshots) {
   Bounds window;
   for (const SceneObject& object : scene.objects)
-    for (const Vec3 p : object.surface.vertices) window.extend(object.frame.to_world(p));
+    each_corner(object.surface, [&](Vec3 p) { window.extend(object.frame.to_world(p)); });
   for (const Sample& sample : snapshots.front().samples) window.extend(sample.position);
   if (window.low == window.high)
     for (const Snapshot& snapshot : snapshots)

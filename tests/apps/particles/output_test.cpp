@@ -91,6 +91,25 @@ TEST_CASE("a cut through a field draws the surface where it is", "[particles]") 
   CHECK(n > 40);
 }
 
+TEST_CASE("vertices that no triangle uses are neither in the arena nor in the picture",
+          "[particles]") {
+  const tess::test::Scratch scratch;
+  const std::string mesh =
+      "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+  const auto scene_of = [&](const char* name, const std::string& more) {
+    const std::string file = scratch.write(name, mesh + more);
+    return parse_scene(R"({"dt": 0.01, "steps": 1, "objects": [{"shape": {"file": ")" + file +
+                           R"("}}], "emitters": [{"count": 1,
+                           "surface": {"object": 0, "low": 0.1, "high": 0.3}}]})",
+                       "scene.json");
+  };
+  const Scene kept = scene_of("kept.obj", ""), stray = scene_of("stray.obj", "v 1000 1000 1000\n");
+  const tess::dn::Bounds box = Source(kept).bounds(), same = Source(stray).bounds();
+  CHECK((same.low == box.low && same.high == box.high));
+  const std::vector<Snapshot> snapshots{{0, {{0, {}, {}}}}, {1, {{0, {1, 1, 0}, {}}}}};
+  CHECK(paths_svg(stray, snapshots) == paths_svg(kept, snapshots));
+}
+
 TEST_CASE("a picture of paths has axes, times, and the outline of what moves", "[particles]") {
   const auto picture = [](const std::string& motion, const std::string& outputs = "{}") {
     const Scene scene = with_object(
