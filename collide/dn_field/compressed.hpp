@@ -56,6 +56,9 @@ struct Planes {
 /// The distance of voxel (i, j, k), flat or compressed.
 [[nodiscard]] float voxel_distance(const Field& field, int i, int j, int k);
 
+/// Its normal, unit or zero where it has none. The field stores normals.
+[[nodiscard]] Vec3 voxel_normal(const Field& field, int i, int j, int k);
+
 /// The largest error of a voxel's distance by compression.
 [[nodiscard]] inline double compression_error(const Field& field) {
   return field.planes != nullptr ? field.planes->measured.distance : 0;

@@ -252,6 +252,11 @@ std::optional<Planes> Compressor::run() {
   return made;
 }
 
+lanes::Voxel one_voxel(int i, int j, int k) {
+  const lanes::I zero{};
+  return {~zero, zero + i, zero + j, zero + k};
+}
+
 EntryLayout layout_for(const Field& field, const ErrorBound& bound, int shift) {
   // A normal of so many bits an axis is off by at most 3 / 2^bits, with the best of four neighbours
   // on the octahedral map; that it is, is checked voxel by voxel.
@@ -299,9 +304,15 @@ Field compress(const Field& field, const ErrorBound& bound, int block_shift) {
 
 float voxel_distance(const Field& field, int i, int j, int k) {
   if (field.planes == nullptr) return field.distance[field.grid.index(i, j, k)];
-  const lanes::I zero{};
-  return lanes::planes_at(plane_sampler_of(field), {~zero, zero + i, zero + j, zero + k})
-      .distance[0];
+  return lanes::planes_at(plane_sampler_of(field), one_voxel(i, j, k)).distance[0];
+}
+
+Vec3 voxel_normal(const Field& field, int i, int j, int k) {
+  const lanes::Stored stored =
+      field.planes == nullptr
+          ? lanes::read<LookUp::nearest, Ask::both>(sampler_of(field), one_voxel(i, j, k))
+          : lanes::planes_at(plane_sampler_of(field), one_voxel(i, j, k));
+  return lanes::lane(stored.normal, 0);
 }
 
 }  // namespace tess::dn

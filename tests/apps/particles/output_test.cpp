@@ -91,6 +91,35 @@ TEST_CASE("a cut through a field draws the surface where it is", "[particles]") 
   CHECK(n > 40);
 }
 
+TEST_CASE("the arrows of a cut stand in the middle of their voxels, also far from the origin",
+          "[particles]") {
+  const auto arrows = [](const std::string& low, const std::string& high) {
+    const Scene scene =
+        with_object(R"({"shape": {"boxes": [{"low": [)" + low + R"(, 0, 0], "high": [)" + high +
+                    R"(, 0.6, 0.6]}]}, "resolution": 40, "thickness": 0.2})");
+    const auto field = build_alone(scene.objects[0], tess::dn::Content::distance_and_normal);
+    const std::string svg = slice_svg(field, 2, 0.3), line = "stroke-width=\"0.8\" d=\"";
+    REQUIRE(count(svg, line) == 1);
+    std::string path = svg.substr(svg.find(line) + line.size());
+    path = path.substr(0, path.find('"'));
+    for (char& c : path)
+      if (c == 'M' || c == 'L') c = ' ';
+    std::istringstream numbers(path);
+    std::vector<double> all;
+    for (double x = 0; numbers >> x;) all.push_back(x);
+    return all;
+  };
+  const std::vector<double> near = arrows("0", "0.6"), far = arrows("1000000", "1000000.6");
+  CHECK(near.size() > 1000);
+  REQUIRE(far.size() == near.size());
+  // An arrow is five points, of which the first is its foot. Its direction may differ: halfway
+  // between two faces rounding decides which one is nearer.
+  double off = 0;  // pixels
+  for (std::size_t i = 0; i + 1 < near.size(); i += 10)
+    off = std::max({off, std::abs(far[i] - near[i]), std::abs(far[i + 1] - near[i + 1])});
+  CHECK(off < 0.15);
+}
+
 TEST_CASE("vertices that no triangle uses are neither in the arena nor in the picture",
           "[particles]") {
   const tess::test::Scratch scratch;
