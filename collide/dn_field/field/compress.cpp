@@ -282,10 +282,11 @@ Field compress(const Field& field, const ErrorBound& bound, int block_shift) {
          "a field without normals cannot be compressed; build it with them");
   std::optional<Planes> best;
   const int first = block_shift == 0 ? min_shift : block_shift;
-  const int last = block_shift == 0 ? max_shift - 1 : block_shift;
+  const int last = block_shift == 0 ? max_shift : block_shift;
   for (int shift = first; shift <= last; ++shift) {
     auto made = Compressor(field, bound, layout_for(field, bound, shift), shift).run();
-    if (made && (!best || made->bytes() < best->bytes())) best = std::move(made);
+    if (best && made && made->bytes() >= best->bytes()) break;
+    if (made) best = std::move(made);
   }
   if (!best)
     fail(ErrorCode::bad_argument, "error bound of distance ", bound.distance, " and angle ",

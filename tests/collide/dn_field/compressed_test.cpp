@@ -163,6 +163,27 @@ TEST_CASE("a compressed look-up is that of the nearest voxel, and out of reach o
   }
 }
 
+TEST_CASE("without a block_shift a field gets the blocks that take least memory", "[dn_field]") {
+  const Surface ball = make_sphere(1, 30), speck = make_sphere(0.1, 24);
+  // The speck's part of the last grid lies in one block of 16³ voxels.
+  constexpr double cell = 0.04;
+  const auto best_for = [](const Surface& surface, const Grid& grid, double thickness) {
+    const Field flat = build_field(surface, grid, {.thickness = thickness});
+    const ErrorBound bound{0.125 * grid.cell, 3 * degree};
+    std::size_t least = flat.bytes();
+    int best = 0;
+    for (const int shift : {2, 3, 4}) {
+      const std::size_t bytes = compress(flat, bound, shift).bytes();
+      if (bytes < least) least = bytes, best = shift;
+    }
+    CHECK(compress(flat, bound).bytes() == least);
+    return best;
+  };
+  CHECK(best_for(ball, grid_around(bounds(ball), 40, 0.5), 0.5) == 2);
+  CHECK(best_for(speck, grid_around(bounds(speck), 96, 1), 0.06) == 3);
+  CHECK(best_for(speck, {-40 * cell * Vec3{1, 1, 1}, cell, {96, 96, 96}}, 0.1) == 4);
+}
+
 TEST_CASE("bounds that mean nothing, or that no entry meets, are refused", "[dn_field]") {
   const Surface box = make_box({1, 1, 1});
   const Field flat = build_field(box, grid_around(bounds(box), 12, 0.5));
