@@ -31,13 +31,13 @@ tess::Task simulated(Problem& problem, apps::Progress& progress) {
   co_await simulate(stage, result, run_options);
   progress.clear();
   tess::print(table(stage->scene, result, problem.report));
-  // The results are written first: a failure of an extra below must not lose them.
-  if (!options.out.empty()) write_files(options.out, *stage, result);
   const auto write_json = [&] {
     if (!options.json.empty())
       plot::write_file(options.json, json(stage->scene, result, problem.report));
   };
+  // The results are written first: a failure of the files and of the study must not lose them.
   write_json();
+  if (!options.out.empty()) write_files(options.out, *stage, result);
   if (options.study) {
     StudyOptions study_options;
     study_options.progress = &progress;

@@ -48,13 +48,17 @@ struct Planes {
 
 /// Compresses `field` so that every voxel meets `bound`, and measures it on all voxels, with the
 /// look-up's own arithmetic. The result has the jump of `field`. block_shift 2 to 4, or 0: the one
-/// that takes least memory. Throws Error(bad_argument) for a field without normals, for a bound
-/// that is negative, NaN or below what 32 bits hold (about a thousandth of the thickness, and a
-/// third of a degree), or for another block_shift.
+/// that takes least memory; larger blocks are tried while they take less. Throws
+/// Error(bad_argument) for a field without normals, for a bound that is negative, NaN or below what
+/// 32 bits hold (about a thousandth of the thickness, and a third of a degree), or for another
+/// block_shift.
 [[nodiscard]] Field compress(const Field& field, const ErrorBound& bound, int block_shift = 0);
 
 /// The distance of voxel (i, j, k), flat or compressed.
 [[nodiscard]] float voxel_distance(const Field& field, int i, int j, int k);
+
+/// Its normal, unit or zero where it has none. The field stores normals.
+[[nodiscard]] Vec3 voxel_normal(const Field& field, int i, int j, int k);
 
 /// The largest error of a voxel's distance by compression.
 [[nodiscard]] inline double compression_error(const Field& field) {

@@ -22,6 +22,14 @@ struct Surface {
   }
 };
 
+/// Calls visit(Vec3) for each corner of each triangle: for a vertex as often as triangles use it, and
+/// not for others, which a mesh may hold anywhere.
+template <class Visit>
+void each_corner(const Surface& surface, const Visit& visit) {
+  for (const auto& triangle : surface.triangles)
+    for (const auto v : triangle) visit(surface.vertices[v]);
+}
+
 /// The box around all vertices that a triangle uses.
 [[nodiscard]] Bounds bounds(const Surface& surface);
 

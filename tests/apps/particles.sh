@@ -174,7 +174,7 @@ unwritable '--json /nonexistent/x.json: cannot be written: its folder /nonexiste
   "$particles" "$scratch/scene.json" --json /nonexistent/x.json
 unwritable "--json $scratch: cannot be written: is a directory; give" "$particles" "$scratch/scene.json" --json "$scratch"
 unwritable 'wedge.obj is not a directory' "$particles" "$scratch/scene.json" --json "$scratch/wedge.obj/x.json"
-for file in field.svg paths.svg; do
+for file in field.svg paths.svg trajectories.pvd; do
   mkdir -p "$scratch/taken/$file"
   unwritable "--out $scratch/taken $scratch/taken/$file: cannot be written: is a directory; give" \
     "$particles" "$scratch/scene.json" --out "$scratch/taken"
@@ -182,6 +182,10 @@ for file in field.svg paths.svg; do
 done
 : >"$scratch/taken"
 unwritable '--out .*taken cannot be made a folder' "$particles" "$scratch/scene.json" --out "$scratch/taken"
+mkdir -p "$scratch/late/trajectories/step_000000020.vtp"
+! "$particles" "$scratch/scene.json" --pes 1 --json "$scratch/written.json" --out "$scratch/late" >"$scratch/out.txt" 2>&1 &&
+  grep -q result_hash "$scratch/written.json"
+check "the JSON is written before a snapshot that cannot be" $?
 unwritable '--json' "${mpirun[@]}" --quiet -n 2 "$particles" "$scratch/scene.json" --pes 1 --json /nonexistent/x.json
 unwritable '--resolutions 16,32: is for a study; add --study' "$particles" "$scratch/scene.json" --resolutions 16,32
 "$particles" "$scratch/scene.json" --pes 1 --steps 0 --json "$scratch/new/r.json" --out "$scratch/new" >"$scratch/out.txt" 2>&1 &&

@@ -24,8 +24,10 @@ void refuse_to_overwrite(const Scene& scene, const Options& options, const std::
   std::vector<fs::path> others{options.scene, options.json, trace};
   names.reads("SCENE", options.scene);
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
-    others.emplace_back(scene.objects[i].field);
-    names.reads(fmt::format("objects[{}].field", i), scene.objects[i].field);
+    const SceneObject& object = scene.objects[i];
+    for (const std::string& read : {object.field, object.file}) others.emplace_back(read);
+    names.reads(fmt::format("objects[{}].field", i), object.field);
+    names.reads(fmt::format("objects[{}].shape.file", i), object.file);
   }
   names.writes("--json", options.json);
   names.writes("--trace", trace);
@@ -104,14 +106,20 @@ void prepare_files(const Scene& scene, const Options& options, const std::string
   plot::require_writable("--json", options.json);
   if (options.out.empty()) return;
   const fs::path in(options.out);
-  const auto require = [&](const char* file) {
+  const auto require = [&](const std::string& file) {
     plot::require_writable("--out " + options.out, (in / file).string());
   };
+  for (std::size_t i = 0; scene.outputs.fields && i < scene.objects.size(); ++i)
+    require(field_file(i));
   if (scene.outputs.slice) require("field.svg");
   if (scene.outputs.trajectories > 0) {
     require("paths.svg");
+    require("trajectories.pvd");
     plot::make_folder("--out " + options.out, in / "trajectories");
   }
+  if (!options.study) return;
+  for (const std::string& picture : study_pictures())
+    plot::require_picture("--out " + options.out, (in / picture).string());
 }
 
 void write_files(const std::string& folder, const Stage& stage, const RunResult& result) {

@@ -3,7 +3,6 @@
 #include "apps/plot/contour.hpp"
 #include "apps/plot/ticks.hpp"
 #include "collide/dn_field/compressed.hpp"
-#include "collide/dn_field/look_up.hpp"
 
 #include <algorithm>
 #include <array>
@@ -215,6 +214,10 @@ class Layer {
     const auto [x, y, z] = voxel(i, j);
     return static_cast<double>(voxel_distance(field_, x, y, z));
   }
+  [[nodiscard]] Vec3 normal(int i, int j) const {
+    const auto [x, y, z] = voxel(i, j);
+    return voxel_normal(field_, x, y, z);
+  }
   /// The coordinate of the layer along its axis.
   [[nodiscard]] double place() const {
     return component(field_.grid.origin, axis_) + index_ * field_.grid.cell;
@@ -252,30 +255,21 @@ std::vector<std::vector<Point>> below(const Layer& layer, const Frame2D& frame, 
 std::string normals(const Layer& layer, const Frame2D& frame) {
   constexpr int arrows = 20;
   const int stride = std::max(1, layer.n_across() / arrows);
-  std::vector<float> x, y, z;
+  const double length = 0.8 * stride * layer.field().grid.cell;
+  std::string path;
   for (int j = stride / 2; j < layer.n_up(); j += stride)
     for (int i = stride / 2; i < layer.n_across(); i += stride) {
-      const Vec3 p = layer.centre(i, j);
-      x.push_back(static_cast<float>(p.x));
-      y.push_back(static_cast<float>(p.y));
-      z.push_back(static_cast<float>(p.z));
+      const Vec3 normal = layer.normal(i, j);
+      if (normal == Vec3{}) continue;
+      const Point foot = frame.seen(layer.centre(i, j)), along = frame.seen(length * normal);
+      const Point tip{foot.x + along.x, foot.y + along.y};
+      const auto barb = [&](char command, double side) {
+        return frame.to(command, {tip.x - 0.3 * along.x - side * along.y,
+                                  tip.y - 0.3 * along.y + side * along.x});
+      };
+      path += frame.to('M', foot) + frame.to('L', tip) + barb('M', 0.15) + frame.to('L', tip) +
+              barb('L', -0.15);
     }
-  std::vector<float> distance(x.size()), nx(x.size()), ny(x.size()), nz(x.size());
-  look_up(layer.field(), LookUp::nearest, {x, y, z}, {distance, nx, ny, nz});
-  std::string path;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    const Vec3 from{x[i], y[i], z[i]}, normal{nx[i], ny[i], nz[i]};
-    if (normal == Vec3{}) continue;
-    const double length = 0.8 * stride * layer.field().grid.cell;
-    const Point foot = frame.seen(from), along = frame.seen(length * normal);
-    const Point tip{foot.x + along.x, foot.y + along.y};
-    const auto barb = [&](char command, double side) {
-      return frame.to(command, {tip.x - 0.3 * along.x - side * along.y,
-                                tip.y - 0.3 * along.y + side * along.x});
-    };
-    path += frame.to('M', foot) + frame.to('L', tip) + barb('M', 0.15) + frame.to('L', tip) +
-            barb('L', -0.15);
-  }
   return path;
 }
 
@@ -288,7 +282,7 @@ double largest(Vec3 size) {
 Bounds window_of(const Scene& scene, const std::vector<Snapshot>& snapshots) {
   Bounds window;
   for (const SceneObject& object : scene.objects)
-    for (const Vec3 p : object.surface.vertices) window.extend(object.frame.to_world(p));
+    each_corner(object.surface, [&](Vec3 p) { window.extend(object.frame.to_world(p)); });
   for (const Sample& sample : snapshots.front().samples) window.extend(sample.position);
   if (window.low == window.high)
     for (const Snapshot& snapshot : snapshots)

@@ -110,8 +110,11 @@ SceneObject read_object(const Node& node, const std::string& folder, double dt,
         node[key].refuse("stands beside a field from a file, which has its own; leave it out");
     fingerprint_of_field = read_field(of, folder, object);
   };
-  node.read({{"shape", [&](const Node& of) { object.surface = read_shape(of, folder); },
-              "one of sphere, box, boxes, torus, cylinder, plate, file"},
+  const auto shape = [&](const Node& of) {
+    object.surface = read_shape(of, folder);
+    if (of.has("file")) object.file = path_beside(folder, of["file"].text());
+  };
+  node.read({{"shape", shape, "one of sphere, box, boxes, torus, cylinder, plate, file"},
              {"field", field},
              {"resolution", object.grid.n[0], 4, 1024},
              {"thickness", object.thickness, positive},

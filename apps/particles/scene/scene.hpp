@@ -20,6 +20,7 @@ namespace particles {
 /// An object with the field around it.
 struct SceneObject {
   tess::dn::Surface surface;
+  std::string file;      ///< that the surface is read from; empty: a built-in shape
   tess::dn::Grid grid;   ///< of the field
   double thickness = 0;  ///< of the field beyond the surface, in the object's units
   tess::dn::Method method = tess::dn::Method::exact;

@@ -4,6 +4,7 @@
 #include "collide/dn_field/walls.hpp"
 #include "runtime/core/error.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 
@@ -31,10 +32,12 @@ void check_thickness(const Scene& scene, std::size_t number, double scale) {
            " is below the distance ", reach(rules), " at which a rule begins to act");
   if ((rules.impact && rules.impact->sweep == Sweep::on) || !needs_field(rules)) return;
   const Frame& frame = object.frame;
-  const double extent = norm(bounds(object.surface).size());
+  // The object turns and grows about its origin, of which the surface may be far.
+  double furthest = 0;
+  each_corner(object.surface, [&](Vec3 p) { furthest = std::max(furthest, norm(p)); });
   const double surface = norm(frame.velocity) +
-                         norm(frame.angular_velocity) * frame.scale * extent +
-                         std::abs(frame.scale_rate) * extent;
+                         norm(frame.angular_velocity) * greatest_scale(scene, object) * furthest +
+                         std::abs(frame.scale_rate) * furthest;
   for (std::size_t e = 0; e < scene.emitters.size(); ++e) {
     const Emitter& emitter = scene.emitters[e];
     const double speed = norm(emitter.velocity) + std::sqrt(3.0) * emitter.spread +

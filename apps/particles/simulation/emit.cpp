@@ -102,10 +102,10 @@ Bounds Source::bounds() const {
       box.extend(emitter.centre + r);
     } else if (emitter.where == Emitter::Where::surface) {
       const SceneObject& object = scene_.objects[emitter.object];
-      for (const Vec3 p : object.surface.vertices) {
+      each_corner(object.surface, [&](Vec3 p) {
         box.extend(object.frame.to_world(p) - r);
         box.extend(object.frame.to_world(p) + r);
-      }
+      });
     } else {
       box.extend(emitter.low);
       box.extend(emitter.high);

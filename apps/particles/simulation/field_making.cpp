@@ -1,6 +1,7 @@
 #include "apps/particles/simulation/field_making.hpp"
 
 #include "collide/dn_field/field_file.hpp"
+#include "runtime/core/error.hpp"
 
 #include <algorithm>
 #include <numbers>
@@ -12,6 +13,13 @@ namespace {
 
 FieldOptions options_of(const SceneObject& object, Content content) {
   return {object.sides, content, object.thickness, object.method, object.blur};
+}
+
+/// The field from the object's file, with normals only where they are asked for.
+Field loaded(const SceneObject& object, Content content) {
+  Field field = load_field(object.field);
+  if (content == Content::distance) field.normal = {};
+  return field;
 }
 
 }  // namespace
@@ -26,8 +34,7 @@ void FieldInTheMaking::begin(const SceneObject& object, Content content, int n_p
   start_ = std::chrono::steady_clock::now();
   n_parts_ = n_parts;
   if (!object.field.empty()) {
-    field_ = load_field(object.field);
-    if (content == Content::distance) field_.normal = {};
+    field_ = loaded(object, content);
     return;
   }
   grid_ = object.grid;
@@ -58,9 +65,13 @@ void FieldInTheMaking::finish(const std::optional<Compression>& compression) {
 }
 
 Field build_alone(const SceneObject& object, Content content) {
-  return object.field.empty()
-             ? build_field(object.surface, object.grid, options_of(object, content))
-             : load_field(object.field);
+  if (object.field.empty())
+    return build_field(object.surface, object.grid, options_of(object, content));
+  Field field = loaded(object, content);
+  if (field.content() != content)
+    tess::fail(tess::ErrorCode::bad_file, object.field,
+               ": stores no normals, which are needed here; build it with distance and normal");
+  return field;
 }
 
 ErrorBound bound_of(const Compression& compression, const Field& field) {

@@ -54,6 +54,37 @@ void grazing(Rows& rows) {
   }
 }
 
+/// Parallel particles that a threshold stops before a ball: those beside it fly on, the others leave
+/// by its normal, which a voxel knows up to half its diagonal over the distance from the centre.
+void thresholds(Rows& rows) {
+  constexpr double radius = 0.5, threshold = 0.25, stops = radius + threshold;
+  const Field ball = sphere_field(cube_grid(1.5, 61), radius);
+  const Object object{&ball, {}};
+  for (const double thresholds : {0.04, 0.4, 4.0, 12.0}) {
+    Rules rules = impact(1, Sweep::on);
+    rules.impact->threshold = threshold;
+    const double step = thresholds * threshold;
+    const int n_steps = static_cast<int>(std::ceil(3 / step));
+    double changed = 0, off = 0;
+    for (int i = 0; i < 60; ++i) {
+      const double beside = 0.022 * i * stops;
+      if (std::abs(beside / stops - 1) < 0.03) continue;
+      const Vec3 start{-1.4, beside * std::cos(2.4 * i), beside * std::sin(2.4 * i)}, way{1, 0, 0};
+      const Particle end = flown(rules, step, n_steps, {&object, 1}, {start, way});
+      if (beside > stops) {
+        changed += end.velocity == way ? 0 : 1;
+      } else {
+        const Vec3 met{-std::sqrt(stops * stops - beside * beside), start.y, start.z};
+        const Vec3 normal = direction(met);
+        worsen(off, norm(end.velocity - way + 2 * dot(normal, way) * normal));
+      }
+    }
+    rows.add("ball with threshold: passers met", "v dt/threshold", thresholds, changed, 0);
+    rows.add("ball with threshold: angle", "v dt/threshold", thresholds, off,
+             2.2 * static_cast<double>(half_diagonal) * ball.grid.cell / stops);
+  }
+}
+
 /// A closed room: eight corners, met again and again.
 void corners(Rows& rows) {
   const double half = 1;
@@ -244,6 +275,7 @@ void all_rules(Rows& rows) {
 void extreme_motion(Rows& rows) {
   fast(rows);
   grazing(rows);
+  thresholds(rows);
   corners(rows);
   moving_walls(rows);
   approaching_walls(rows);

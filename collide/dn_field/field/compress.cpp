@@ -20,6 +20,11 @@ double angle_between(Vec3 entry, Vec3 voxel) {
   return std::atan2(norm(cross(entry, voxel)), dot(entry, voxel));
 }
 
+/// The distances at a cell's middle that keep all its voxels on their side of the cut-off.
+struct Allowed {
+  double least = -HUGE_VAL, most = HUGE_VAL;
+};
+
 struct Plane {
   float distance;  // at the cell's middle
   Normal normal;   // unit, or zero
@@ -36,6 +41,11 @@ float distance_to(const Plane& plane, float x, float y, float z, float cut_off) 
   return above < cut_off ? above : cut_off;
 }
 
+/// Of the distances of entries: the middle of a cell may be a block's diagonal beyond the cut-off.
+double furthest_middle(const Field& field, int shift) {
+  return field.thickness + field.grid.cell * (2 << shift);
+}
+
 class Compressor {
  public:
   Compressor(const Field& field, const ErrorBound& bound, const EntryLayout& layout, int shift)
@@ -45,7 +55,8 @@ class Compressor {
         shift_(shift),
         cell_(static_cast<float>(field.grid.cell)),
         thickness_(static_cast<float>(field.thickness)),
-        cut_off_(cut_off(field.thickness)) {}
+        cut_off_(cut_off(field.thickness)),
+        rounding_(8 * 0x1p-24 * furthest_middle(field, shift)) {}
 
   /// Empty if entries do not meet the bound even voxel by voxel.
   [[nodiscard]] std::optional<Planes> run();
@@ -55,16 +66,25 @@ class Compressor {
     double distance;
     Vec3 normal;    // zero: has none
     float x, y, z;  // from the cell's middle
+    [[nodiscard]] double along(Vec3 n) const {
+      return dot(n, {static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)});
+    }
   };
 
   void gather(std::array<int, 3> low, int s);
-  [[nodiscard]] std::uint32_t written(double distance, Vec3 normal) const;
+  /// Whether a voxel is at the cut-off.
+  [[nodiscard]] bool is_far(const Voxel& v) const {
+    return v.normal == Vec3{} && std::abs(v.distance) >= static_cast<double>(thickness_);
+  }
+  [[nodiscard]] std::uint32_t written(double distance, Vec3 normal,
+                                      const Allowed& range = {}) const;
   [[nodiscard]] Plane plane(std::uint32_t entry) const {
     const lanes::Stored all = lanes::decode(layout_, lanes::I{} + static_cast<std::int32_t>(entry));
     return {all.distance[0], {all.normal.x[0], all.normal.y[0], all.normal.z[0]}};
   }
   [[nodiscard]] std::uint32_t written_normal(Vec3 normal) const;
-  [[nodiscard]] double fitted_distance(Vec3 normal) const;
+  [[nodiscard]] Allowed allowed(Vec3 normal) const;
+  [[nodiscard]] double fitted_distance(Vec3 normal, const Allowed& range) const;
   [[nodiscard]] bool fits(std::array<int, 3> low, int s, std::uint32_t& entry);
   [[nodiscard]] bool divide(std::array<int, 3> low, int s, std::vector<std::uint32_t>& entries);
 
@@ -73,6 +93,7 @@ class Compressor {
   EntryLayout layout_;
   int shift_;
   float cell_, thickness_, cut_off_;
+  double rounding_;  // of a voxel's distance
   std::vector<Voxel> voxels_;
 };
 
@@ -93,10 +114,12 @@ void Compressor::gather(std::array<int, 3> low, int s) {
       }
 }
 
-std::uint32_t Compressor::written(double distance, Vec3 normal) const {
-  const auto most = static_cast<double>(layout_.zero() - 1);
-  const double steps =
-      layout_.step > 0 ? std::round(distance / static_cast<double>(layout_.step)) : 0;
+std::uint32_t Compressor::written(double distance, Vec3 normal, const Allowed& range) const {
+  const auto most = static_cast<double>(layout_.zero() - 1),
+             step = static_cast<double>(layout_.step);
+  double steps = step > 0 ? std::round(distance / step) : 0;
+  if (steps * step > range.most) steps = std::floor(range.most / step);
+  if (steps * step < range.least) steps = std::ceil(range.least / step);
   const auto above =
       static_cast<std::uint32_t>(static_cast<int>(std::clamp(steps, -most, most)) + layout_.zero());
   return above << (2 * layout_.normal_bits) | written_normal(normal);
@@ -124,27 +147,36 @@ std::uint32_t Compressor::written_normal(Vec3 normal) const {
   return best;
 }
 
-/// The distance at the middle that is least off; voxels at the cut-off only need to stay beyond it.
-double Compressor::fitted_distance(Vec3 normal) const {
-  double low = HUGE_VAL, high = -HUGE_VAL, above = -HUGE_VAL, below = HUGE_VAL;
+/// Voxels at the cut-off stay there: otherwise a rule that reaches as far as the field would act in
+/// them. The others keep their normals, which voxels at the cut-off have not.
+Allowed Compressor::allowed(Vec3 normal) const {
+  const double far = static_cast<double>(cut_off_) + rounding_,
+               near = static_cast<double>(cut_off_) - rounding_;
+  Allowed range;
   for (const Voxel& v : voxels_) {
-    const double rest =
-        v.distance -
-        dot(normal, {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)});
-    if (v.distance >= static_cast<double>(thickness_)) {
-      above = std::max(above, rest);
-    } else if (v.distance <= -static_cast<double>(thickness_)) {
-      below = std::min(below, rest);
-    } else {
-      low = std::min(low, rest);
-      high = std::max(high, rest);
+    const double along = v.along(normal);
+    if (is_far(v) && v.distance > 0) {
+      range.least = std::max(range.least, far - along);
+    } else if (is_far(v)) {
+      range.most = std::min(range.most, -far - along);
+    } else if (v.normal != Vec3{}) {
+      range.least = std::max(range.least, -near - along);
+      range.most = std::min(range.most, near - along);
     }
   }
-  if (low > high) return above > -HUGE_VAL ? above : below;
-  // Between the least and the most that the others ask for, moved as far as the cut-off needs.
-  const double middle = 0.5 * (low + high);
-  return std::min(std::max(middle, std::min(above, low + bound_.distance)),
-                  std::max(below, high - bound_.distance));
+  return range;
+}
+
+/// The distance at the middle that is least off.
+double Compressor::fitted_distance(Vec3 normal, const Allowed& range) const {
+  double low = HUGE_VAL, high = -HUGE_VAL;
+  for (const Voxel& v : voxels_) {
+    if (is_far(v)) continue;
+    low = std::min(low, v.distance - v.along(normal));
+    high = std::max(high, v.distance - v.along(normal));
+  }
+  const double middle = low > high ? 0 : 0.5 * (low + high);
+  return std::max(std::min(middle, range.most), range.least);
 }
 
 bool Compressor::fits(std::array<int, 3> low, int s, std::uint32_t& entry) {
@@ -157,11 +189,15 @@ bool Compressor::fits(std::array<int, 3> low, int s, std::uint32_t& entry) {
   Vec3 sum;
   for (const Voxel& v : voxels_) sum += v.normal;
   const Vec3 normal = direction(sum), kept = to_vec3(plane(written(0, normal)).normal);
-  entry = written(s == 0 ? voxels_[0].distance : fitted_distance(kept), normal);
+  const Allowed range = allowed(kept);
+  if (!(range.least <= range.most)) return false;
+  entry = written(fitted_distance(kept, range), normal, range);
   const Plane made = plane(entry);
   const Vec3 made_normal = to_vec3(made.normal);
   for (const Voxel& v : voxels_) {
     const auto d = static_cast<double>(distance_to(made, v.x, v.y, v.z, cut_off_));
+    const bool is_cut_off = std::abs(d) >= static_cast<double>(cut_off_);
+    if (is_far(v) ? !is_cut_off : is_cut_off && v.normal != Vec3{}) return false;
     const double off = std::abs(d - v.distance);
     if (!(off <= bound_.distance)) return false;  // also NaN
     off_.distance = std::max(off_.distance, off);
@@ -216,15 +252,18 @@ std::optional<Planes> Compressor::run() {
   return made;
 }
 
+lanes::Voxel one_voxel(int i, int j, int k) {
+  const lanes::I zero{};
+  return {~zero, zero + i, zero + j, zero + k};
+}
+
 EntryLayout layout_for(const Field& field, const ErrorBound& bound, int shift) {
   // A normal of so many bits an axis is off by at most 3 / 2^bits, with the best of four neighbours
   // on the octahedral map; that it is, is checked voxel by voxel.
   int bits = min_normal_bits;
   while (bits < max_normal_bits && 3.0 / (1 << bits) > entry_share * bound.angle) ++bits;
-  // The middle of a cell may stand a block's diagonal beyond the cut-off.
-  const double range = field.thickness + field.grid.cell * (2 << shift);
   const double steps = std::ldexp(1.0, 31 - 2 * bits) - 1;
-  return {bits, static_cast<float>(range / steps)};
+  return {bits, static_cast<float>(furthest_middle(field, shift) / steps)};
 }
 
 }  // namespace
@@ -243,10 +282,11 @@ Field compress(const Field& field, const ErrorBound& bound, int block_shift) {
          "a field without normals cannot be compressed; build it with them");
   std::optional<Planes> best;
   const int first = block_shift == 0 ? min_shift : block_shift;
-  const int last = block_shift == 0 ? max_shift - 1 : block_shift;
+  const int last = block_shift == 0 ? max_shift : block_shift;
   for (int shift = first; shift <= last; ++shift) {
     auto made = Compressor(field, bound, layout_for(field, bound, shift), shift).run();
-    if (made && (!best || made->bytes() < best->bytes())) best = std::move(made);
+    if (best && made && made->bytes() >= best->bytes()) break;
+    if (made) best = std::move(made);
   }
   if (!best)
     fail(ErrorCode::bad_argument, "error bound of distance ", bound.distance, " and angle ",
@@ -265,9 +305,15 @@ Field compress(const Field& field, const ErrorBound& bound, int block_shift) {
 
 float voxel_distance(const Field& field, int i, int j, int k) {
   if (field.planes == nullptr) return field.distance[field.grid.index(i, j, k)];
-  const lanes::I zero{};
-  return lanes::planes_at(plane_sampler_of(field), {~zero, zero + i, zero + j, zero + k})
-      .distance[0];
+  return lanes::planes_at(plane_sampler_of(field), one_voxel(i, j, k)).distance[0];
+}
+
+Vec3 voxel_normal(const Field& field, int i, int j, int k) {
+  const lanes::Stored stored =
+      field.planes == nullptr
+          ? lanes::read<LookUp::nearest, Ask::both>(sampler_of(field), one_voxel(i, j, k))
+          : lanes::planes_at(plane_sampler_of(field), one_voxel(i, j, k));
+  return lanes::lane(stored.normal, 0);
 }
 
 }  // namespace tess::dn

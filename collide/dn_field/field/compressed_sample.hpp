@@ -50,7 +50,7 @@ inline Stored decode(const EntryLayout& layout, I entry) {
   return {__builtin_convertvector(steps, F) * layout.step, scale * n};
 }
 
-/// The distances and normals of voxels.
+/// The distances and normals of voxels. Those at the cut-off have no normal, as in a flat field.
 inline Stored planes_at(const PlaneSampler& field, const Voxel& voxel) {
   const I i = voxel.i, j = voxel.j, k = voxel.k;
   const int e = field.e, in_block = (1 << e) - 1;
@@ -66,6 +66,7 @@ inline Stored planes_at(const PlaneSampler& field, const Voxel& voxel) {
   const F3& n = plane.normal;
   const F d = plane.distance + (n.x * off(li) + n.y * off(lj) + n.z * off(lk));
   plane.distance = min(max(d, all(-field.cut_off)), all(field.cut_off));
+  plane.normal = only(abs(d) < field.cut_off, plane.normal);
   return plane;
 }
 

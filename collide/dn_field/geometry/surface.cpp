@@ -112,8 +112,7 @@ double volume_of(const Surface& surface) {
 
 Bounds bounds(const Surface& surface) {
   Bounds box;
-  for (const auto& triangle : surface.triangles)
-    for (const auto v : triangle) box.extend(surface.vertices[v]);
+  each_corner(surface, [&](Vec3 p) { box.extend(p); });
   return box;
 }
 

@@ -42,7 +42,8 @@ F bent(const PlacedObject& object, D3 arm) {
 /// the velocity at the particle's place, not at the surface beside it.
 F taken_by_growth(const PlacedObject& object, F free, I in, F distance) {
   const auto g = static_cast<float>(object.growth);
-  return std::max(-g, 0.0F) * max(free, F{}) + std::fabs(g) * abs(only(in, distance));
+  return std::max(-g, 0.0F) * max(free + object.stopped, F{}) +
+         std::fabs(g) * abs(only(in, distance));
 }
 
 template <LookUp Kind, Ask Asked, Setting Where, Sweep Swept, bool Compressed>
@@ -151,7 +152,8 @@ double jump_of(const Field& field) {
   return static_cast<double>(field.jump) + 2 * compression_error(field);
 }
 
-PlacedObject placed(const Object& object, LookUp kind, double step, bool restless) {
+PlacedObject placed(const Object& object, LookUp kind, double step, bool restless,
+                    double threshold) {
   const Field& field = *object.field;
   const Grid& grid = field.grid;
   const Frame& frame = object.frame;
@@ -171,6 +173,7 @@ PlacedObject placed(const Object& object, LookUp kind, double step, bool restles
   result.scale = static_cast<float>(frame.scale);
   result.cell = static_cast<float>(cell);
   if (field.sides == Sides::two) result.padding = open_surface_clearance(kind) * result.cell;
+  result.stopped = result.padding + static_cast<float>(threshold);
   result.jump = static_cast<float>(jump_of(field) * frame.scale);
   result.compressed = field.planes != nullptr;
   if (result.compressed) result.planes = plane_sampler_of(field);

@@ -14,8 +14,8 @@ inline constexpr std::size_t block_size = 256;  // with the particles 20 to 30 k
 struct alignas(64) NearestSurface {
   float distance[block_size];                            ///< out_of_reach outside all fields
   float nx[block_size], ny[block_size], nz[block_size];  ///< unit or zero
-  /// Sweep::on only: a displacement below this, relative to the velocity below, meets no surface
-  /// in this step. `follow`: any displacement may meet one.
+  /// Sweep::on only: a displacement below this, relative to the velocity below, is not stopped in
+  /// this step. `follow`: any displacement may be.
   float free[block_size];
   // One object at rest, samples of one voxel: most particles are still in the voxel of the step
   // before, which is then not fetched and decoded again.
@@ -39,6 +39,7 @@ struct PlacedObject {
   float scale;           ///< world units per unit of the object
   float cell;            ///< in world units
   float padding;         ///< subtracted from the distance to an open surface
+  float stopped;         ///< the distance at which particles are stopped, padding included
   bool compressed;
   float error;  ///< largest error of a compressed voxel's distance, in world units
   float doubt;  ///< that plus half a voxel's diagonal
@@ -57,8 +58,10 @@ struct PlacedObject {
 /// Field::jump of the samples of a field, compressed or not.
 [[nodiscard]] double jump_of(const Field& field);
 
-/// `object` at the start of a step; `restless`: whether any object of the scene moves.
-[[nodiscard]] PlacedObject placed(const Object& object, LookUp kind, double step, bool restless);
+/// `object` at the start of a step; `restless`: whether any object of the scene moves; `threshold`:
+/// of the impact.
+[[nodiscard]] PlacedObject placed(const Object& object, LookUp kind, double step, bool restless,
+                                  double threshold);
 
 /// one_at_rest: one object that neither moves nor is turned.
 enum class Setting : std::uint32_t { one_at_rest, general };
@@ -123,8 +126,10 @@ inline F outside_by(const PlacedObject& object, F3 g) {
              max(beyond(g.z, object.field.n[2]), F{}));
 }
 
+/// Lower bound of the way to a place where particles are stopped, or to the field.
 inline F free_in_world(const PlacedObject& object, const Sample& found, F3 g) {
-  return found.in ? found.free * object.scale - object.error : outside_by(object, g);
+  return found.in ? found.free * object.scale - (object.error + object.stopped)
+                  : outside_by(object, g);
 }
 
 inline D3 cross(Vec3 a, D3 b) {

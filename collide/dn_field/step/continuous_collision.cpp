@@ -57,12 +57,20 @@ struct Here {
   D stride;    ///< fraction of the step for which the sample holds, or which is free
 };
 
-Here sample_here(const PlacedObject& object, LookUp kind, const Pose& pose, D3 x, D3 way,
-                 const Seen& seen) {
+/// By how much a threshold in the world grows, as seen from an object that shrinks: until it has
+/// half its size, for which a Bend is valid, or until the step's end.
+D grown(double threshold, const PlacedObject& object, const Pose& pose) {
+  return threshold / max(0.5 * pose.size(), all(1 + object.growth)) - threshold;
+}
+
+Here sample_here(const PlacedObject& object, LookUp kind, double threshold, const Pose& pose, D3 x,
+                 D3 way, const Seen& seen) {
   const F3 g = to_grid(object, to_float(seen.place - object.centre));
   const Sample found = sample_of(object, kind, g);
   const I in = found.in;
-  const F free = max(free_in_world(object, found, g), F{});
+  F free = free_in_world(object, found, g);
+  if (object.growth < 0) free = free - only(in, to_float(grown(threshold, object, pose)));
+  free = max(free, F{});
   const D3 n = to_double(only(in, to_world(object, found.normal)));
   // The way is scaled by a power of two, exactly: floats hold neither squares above 1e38 nor the
   // fractions of such a way that a voxel is.
@@ -135,7 +143,7 @@ Contact contact_with(const Scene& scene, std::size_t o, const Ways& ways, D s, D
   const Pose pose(object, ways.begin + s);
   const D3 x = ways.at(s);
   const Seen seen = lanes::seen(object, pose, x, ways.way);
-  const Here here = sample_here(object, scene.kind, pose, x, ways.way, seen);
+  const Here here = sample_here(object, scene.kind, c.threshold, pose, x, ways.way, seen);
   next = min(next, s + here.stride);
   const Gap gap{object, here, seen.place, c.threshold};
   const D closes = gap.rate(pose, seen);

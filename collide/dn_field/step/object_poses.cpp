@@ -51,7 +51,8 @@ ObjectPoses object_poses(const Run& run, std::vector<Object>& objects, double fi
   const auto place_objects = [&] {
     auto& now = poses.objects.emplace_back();
     for (const Object& object : objects)
-      now.push_back(placed(object, plan.rules.look_up, plan.step, restless));
+      now.push_back(
+          placed(object, plan.rules.look_up, plan.step, restless, plan.constants.threshold));
   };
   for (int i = 0; i < n_steps; ++i) {
     poses.changes.push_back(velocity_changes(plan.rules, (first + i) * plan.step, plan.step));

@@ -91,6 +91,54 @@ TEST_CASE("a cut through a field draws the surface where it is", "[particles]") 
   CHECK(n > 40);
 }
 
+TEST_CASE("the arrows of a cut stand in the middle of their voxels, also far from the origin",
+          "[particles]") {
+  const auto arrows = [](const std::string& low, const std::string& high) {
+    const Scene scene =
+        with_object(R"({"shape": {"boxes": [{"low": [)" + low + R"(, 0, 0], "high": [)" + high +
+                    R"(, 0.6, 0.6]}]}, "resolution": 40, "thickness": 0.2})");
+    const auto field = build_alone(scene.objects[0], tess::dn::Content::distance_and_normal);
+    const std::string svg = slice_svg(field, 2, 0.3), line = "stroke-width=\"0.8\" d=\"";
+    REQUIRE(count(svg, line) == 1);
+    std::string path = svg.substr(svg.find(line) + line.size());
+    path = path.substr(0, path.find('"'));
+    for (char& c : path)
+      if (c == 'M' || c == 'L') c = ' ';
+    std::istringstream numbers(path);
+    std::vector<double> all;
+    for (double x = 0; numbers >> x;) all.push_back(x);
+    return all;
+  };
+  const std::vector<double> near = arrows("0", "0.6"), far = arrows("1000000", "1000000.6");
+  CHECK(near.size() > 1000);
+  REQUIRE(far.size() == near.size());
+  // An arrow is five points, of which the first is its foot. Its direction may differ: halfway
+  // between two faces rounding decides which one is nearer.
+  double off = 0;  // pixels
+  for (std::size_t i = 0; i + 1 < near.size(); i += 10)
+    off = std::max({off, std::abs(far[i] - near[i]), std::abs(far[i + 1] - near[i + 1])});
+  CHECK(off < 0.15);
+}
+
+TEST_CASE("vertices that no triangle uses are neither in the arena nor in the picture",
+          "[particles]") {
+  const tess::test::Scratch scratch;
+  const std::string mesh =
+      "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+  const auto scene_of = [&](const char* name, const std::string& more) {
+    const std::string file = scratch.write(name, mesh + more);
+    return parse_scene(R"({"dt": 0.01, "steps": 1, "objects": [{"shape": {"file": ")" + file +
+                           R"("}}], "emitters": [{"count": 1,
+                           "surface": {"object": 0, "low": 0.1, "high": 0.3}}]})",
+                       "scene.json");
+  };
+  const Scene kept = scene_of("kept.obj", ""), stray = scene_of("stray.obj", "v 1000 1000 1000\n");
+  const tess::dn::Bounds box = Source(kept).bounds(), same = Source(stray).bounds();
+  CHECK((same.low == box.low && same.high == box.high));
+  const std::vector<Snapshot> snapshots{{0, {{0, {}, {}}}}, {1, {{0, {1, 1, 0}, {}}}}};
+  CHECK(paths_svg(stray, snapshots) == paths_svg(kept, snapshots));
+}
+
 TEST_CASE("a picture of paths has axes, times, and the outline of what moves", "[particles]") {
   const auto picture = [](const std::string& motion, const std::string& outputs = "{}") {
     const Scene scene = with_object(
@@ -173,6 +221,9 @@ TEST_CASE("a run replaces none of the files that it reads or writes", "[particle
     scene.objects[0].field = out + "/./" + file;
     CHECK_THAT(refusal(), Catch::Contains("would overwrite objects[0].field"));
     scene.objects[0].field.clear();
+    scene.objects[0].file = out + "/" + file;
+    CHECK_THAT(refusal(), Catch::Contains("would overwrite objects[0].shape.file"));
+    scene.objects[0].file.clear();
     options.json = out + "/" + file;
     CHECK_THAT(refusal(), Catch::Contains("would overwrite --json"));
     options.json.clear();
@@ -182,6 +233,42 @@ TEST_CASE("a run replaces none of the files that it reads or writes", "[particle
   CHECK_THAT(refusal(), Catch::Contains("would overwrite objects[0].field"));
   options.json.clear();
   prepare_files(scene, options, scratch.path("trace.json"));
+}
+
+TEST_CASE("the mesh that a scene reads is not overwritten", "[particles]") {
+  const tess::test::Scratch scratch;
+  const std::string mesh = scratch.write("mesh.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  const Scene scene =
+      with_object(R"({"sides": "two", "shape": {"file": ")" + mesh + R"("}})", R"({"slice": {}})");
+  CHECK(scene.objects[0].file == mesh);
+  const auto refusal = [&](const std::string& json, const std::string& trace) {
+    Options options;
+    options.json = json;
+    return tess::test::message_of([&] { prepare_files(scene, options, trace); });
+  };
+  CHECK_THAT(refusal(mesh, ""), Catch::Contains("would overwrite objects[0].shape.file"));
+  CHECK_THAT(refusal("", mesh), Catch::Contains("would overwrite objects[0].shape.file"));
+  CHECK(refusal(scratch.path("other.obj"), "").empty());
+}
+
+TEST_CASE("a file that cannot be written is refused before the run", "[particles]") {
+  const tess::test::Scratch scratch;
+  Scene scene = with_object(R"({"shape": {"box": {"half": [1, 1, 1]}}})",
+                            R"({"slice": {}, "trajectories": 20})");
+  scene.outputs.fields = true;
+  Options options;
+  options.out = scratch.path("out");
+  options.study = true;
+  for (const char* file : {"field_0.dnf", "field.svg", "paths.svg", "trajectories.pvd",
+                           "study_distance.svg", "study_step.csv"}) {
+    CAPTURE(file);
+    const std::string taken = options.out + "/" + file;
+    std::filesystem::create_directories(taken);
+    CHECK_THAT(tess::test::message_of([&] { prepare_files(scene, options, {}); }),
+               Catch::Contains(taken + ": cannot be written: is a directory"));
+    std::filesystem::remove(taken);
+  }
+  prepare_files(scene, options, {});
 }
 
 TEST_CASE("the shadow of a torus has its hole", "[particles]") {

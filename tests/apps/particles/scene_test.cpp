@@ -213,6 +213,26 @@ TEST_CASE("without swept look-up a step that passes the field is refused", "[par
         std::string::npos);
 }
 
+TEST_CASE("without swept look-up the speed of a surface counts from the origin that it turns about",
+          "[particles][scene]") {
+  const auto refused = [](const std::string& object) {
+    return refusal(R"({"dt": 0.01, "steps": 50, "objects": [{"resolution": 20, )" + object +
+                   R"(}], "emitters": [{"count": 1, "sphere": {"radius": 2}}],
+                   "rules": {"impact": {"restitution": 1, "sweep": false}}})");
+  };
+  const std::string box = R"("thickness": 0.5, "shape": {"boxes": [{"low": [)",
+                    ball = R"("thickness": 0.3, "shape": {"sphere": {"radius": 1}}, "motion": )";
+  // 0.03 radians in a step, at a distance of 1.7 and of 102.
+  CHECK(refused(box + R"(-1, -1, -1], "high": [1, 1, 1]}]}, "motion": {"spin": [0, 0, 3]})") ==
+        "accepted");
+  CHECK(refused(box + R"(100, -1, -1], "high": [102, 1, 1]}]}, "motion": {"spin": [0, 0, 3]})")
+            .find("passes the field of objects[0]") != std::string::npos);
+  CHECK(refused(ball + R"({"spin": [0, 0, 10]})") == "accepted");
+  // It has three times its size at the end.
+  CHECK(refused(ball + R"({"spin": [0, 0, 10], "scale": 4})")
+            .find("passes the field of objects[0]") != std::string::npos);
+}
+
 TEST_CASE("a picture outside of the field is refused", "[particles][scene]") {
   const std::string end = "\"restitution\": 0.7}}";
   const auto cut_at = [&](const std::string& at) {

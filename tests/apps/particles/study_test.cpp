@@ -3,8 +3,10 @@
 #include "apps/particles/study/study.hpp"
 
 #include "apps/particles/study/measure.hpp"
+#include "collide/dn_field/field_file.hpp"
 #include "collide/dn_field/shapes.hpp"
 #include "tests/apps/particles/run_scene.hpp"
+#include "tests/support/scratch.hpp"
 
 #include <chrono>
 #include <thread>
@@ -57,6 +59,26 @@ TEST_CASE("the study of a mesh far from the origin has the errors of the mesh at
     CHECK(far[i].normal_error == Approx(near[i].normal_error).epsilon(0.01).margin(0.01));
   }
   CHECK(n_compared == 9);
+}
+
+TEST_CASE("a field from a file without normals is not studied", "[particles][study]") {
+  using namespace tess::dn;
+  const tess::test::Scratch scratch;
+  const std::string path = scratch.path("field.dnf");
+  const Surface ball = outward(make_sphere(1, 24));
+  save_field(build_field(ball, grid_around(bounds(ball), 24, 0.5),
+                         {.content = Content::distance, .thickness = 0.5}),
+             path);
+  const Scene scene = parse_scene(R"({"dt": 1, "steps": 0,
+    "objects": [{"shape": {"sphere": {"radius": 1, "rings": 24}}, "field": ")" +
+                                      path + R"("}],
+    "emitters": [{"count": 1, "sphere": {"radius": 2}}]})",
+                                  "scene.json");
+  StudyOptions options;
+  options.resolutions = {12};
+  options.n_samples = options.n_bounces = options.n_timed = 10;
+  CHECK(tess::test::message_of([&] { (void)study(scene, options); }) ==
+        path + ": stores no normals, which are needed here; build it with distance and normal");
 }
 
 TEST_CASE("the study finds the orders of the look-ups, and no particle lost where none may be",

@@ -7,6 +7,8 @@
 #include "tests/collide/dn_field/field_samples.hpp"
 #include "tests/support/catch.hpp"
 
+#include <random>
+
 namespace {
 
 using namespace tess::dn;
@@ -74,6 +76,47 @@ TEST_CASE(
       }
 }
 
+TEST_CASE("a compressed field is cut off where the flat one is, and has no normals there",
+          "[dn_field]") {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> within(-0.49, 0.49);
+  const Surface shapes[] = {make_torus(1, 0.4, 64), make_sphere(1, 48), make_box({1, 0.7, 0.5})};
+  for (const Surface& surface : shapes)
+    for (const double thickness : {0.3, 0.5}) {
+      const Grid grid = grid_around(bounds(surface), 60, thickness);
+      const Field flat = build_field(surface, grid, {.thickness = thickness});
+      const std::size_t n = grid.size();
+      Columns at(n), normal(n);
+      for_each_voxel(grid, [&](std::size_t v, Vec3 p) {
+        at.x[v] = static_cast<float>(p.x + within(random) * grid.cell);
+        at.y[v] = static_cast<float>(p.y + within(random) * grid.cell);
+        at.z[v] = static_cast<float>(p.z + within(random) * grid.cell);
+      });
+      for (const auto& [cells, degrees] : {std::pair{0.125, 3.0}, {0.5, 20.0}}) {
+        const Field field = compress(flat, {cells * grid.cell, degrees * degree});
+        std::vector<float> distance(n);
+        look_up(field, LookUp::tangent, {at.x, at.y, at.z},
+                {distance, normal.x, normal.y, normal.z});
+        std::size_t n_far = 0, n_nearer = 0, n_normals = 0, n_lost = 0;
+        for (std::size_t v = 0; v < n; ++v) {
+          const bool has = normal.x[v] != 0 || normal.y[v] != 0 || normal.z[v] != 0;
+          if (flat.normal[v] != no_normal) {
+            n_lost += has ? 0 : 1;
+          } else if (std::abs(flat.distance[v]) >= static_cast<float>(flat.thickness)) {
+            ++n_far;
+            n_nearer += std::abs(distance[v]) < static_cast<float>(flat.thickness) ? 1 : 0;
+            n_normals += has ? 1 : 0;
+          }
+        }
+        CAPTURE(surface.triangles.size(), thickness, cells);
+        CHECK(n_far > n / 10);
+        CHECK(n_nearer == 0);
+        CHECK(n_normals == 0);
+        CHECK(n_lost == 0);
+      }
+    }
+}
+
 TEST_CASE("a compressed field takes at most a fifth of the flat one's memory", "[dn_field]") {
   for (const Surface& surface :
        {make_sphere(1, 60), make_torus(1, 0.4, 80), make_box({1, 0.7, 0.5})}) {
@@ -118,6 +161,27 @@ TEST_CASE("a compressed look-up is that of the nearest voxel, and out of reach o
     CHECK(outside > 1000);
     CHECK(found[n - 1] == out_of_reach);
   }
+}
+
+TEST_CASE("without a block_shift a field gets the blocks that take least memory", "[dn_field]") {
+  const Surface ball = make_sphere(1, 30), speck = make_sphere(0.1, 24);
+  // The speck's part of the last grid lies in one block of 16³ voxels.
+  constexpr double cell = 0.04;
+  const auto best_for = [](const Surface& surface, const Grid& grid, double thickness) {
+    const Field flat = build_field(surface, grid, {.thickness = thickness});
+    const ErrorBound bound{0.125 * grid.cell, 3 * degree};
+    std::size_t least = flat.bytes();
+    int best = 0;
+    for (const int shift : {2, 3, 4}) {
+      const std::size_t bytes = compress(flat, bound, shift).bytes();
+      if (bytes < least) least = bytes, best = shift;
+    }
+    CHECK(compress(flat, bound).bytes() == least);
+    return best;
+  };
+  CHECK(best_for(ball, grid_around(bounds(ball), 40, 0.5), 0.5) == 2);
+  CHECK(best_for(speck, grid_around(bounds(speck), 96, 1), 0.06) == 3);
+  CHECK(best_for(speck, {-40 * cell * Vec3{1, 1, 1}, cell, {96, 96, 96}}, 0.1) == 4);
 }
 
 TEST_CASE("bounds that mean nothing, or that no entry meets, are refused", "[dn_field]") {

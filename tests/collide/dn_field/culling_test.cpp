@@ -56,7 +56,7 @@ Culled culled(const Field& field, LookUp kind, int steps, float reach, std::mt19
     frames.push_back(frames.back());
     frames.back().advance(step);
   }
-  const PlacedObject placed_there = placed({&field, frame}, kind, step, moves);
+  const PlacedObject placed_there = placed({&field, frame}, kind, step, moves, 0);
   const auto near = std::make_unique<NearParticles>();
   Culled result;
   for (int block = 0; block < 8; ++block) {
