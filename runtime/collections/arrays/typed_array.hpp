@@ -154,6 +154,9 @@ class Array final : public ArrayOf<typename C::Index> {
   void take_saved(std::uint32_t incarnation, bool alive, Reader& ar) override {
     auto index = ar.template take<Index>();
     if (!alive) return this->restore_destroyed(index, incarnation);
+      static_assert(serialization::serialises_all<C, Indexed>(),
+                    "serialize() is inherited from a base class and leaves out the members of this "
+                    "class: define it here, and call that of the base class in it");
     if constexpr (Migratable<C>) {
       if constexpr (OnePerPe<C>) index = Index{this->pe_.id().value};
       std::unique_ptr<Indexed> element(this->construct_again(index));

@@ -93,6 +93,33 @@ void serialize(Ar& ar, Foreign& foreign) {
   if (Ar::is_reading) foreign = Foreign(value);
 }
 
+/// Serialises what derives from it.
+template <class Derived>
+struct ByItsFields {
+  template <class Ar>
+  void serialize(Ar& ar) {
+    static_cast<Derived&>(*this).fields(ar);
+  }
+};
+class Fielded : public ByItsFields<Fielded> {
+ public:
+  explicit Fielded(int value = 0) : value_(value) {}
+  template <class Ar>
+  void fields(Ar& ar) {
+    ar(value_);
+  }
+  friend bool operator==(const Fielded& a, const Fielded& b) { return a.value_ == b.value_; }
+
+ private:
+  int value_;
+};
+/// Adds no members.
+class NamedFielded : public Fielded {
+ public:
+  static constexpr int limit = 3;
+  using Fielded::Fielded;
+};
+
 struct Shape {
   int n = 0;
   Shape() = default;
@@ -182,6 +209,12 @@ TEST_CASE("a function beside the type serialises a class of another library",
   check_round_trip(std::map<std::string, Foreign>{{"a", Foreign(6)}});
   check_round_trip(std::bitset<70>(123456789));
   CHECK(tess::round_trip_difference(Foreign(3)).empty());
+}
+
+TEST_CASE("a serialize() that is inherited serves a class without members of its own",
+          "[runtime][serialize]") {
+  check_round_trip(Fielded(3));
+  check_round_trip(std::vector<NamedFielded>{NamedFielded(4), NamedFielded(5)});
 }
 
 TEST_CASE("a unique_ptr to a class with virtual functions comes back", "[runtime][serialize]") {
