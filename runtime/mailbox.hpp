@@ -11,12 +11,10 @@
 #include "runtime/core/serialize.hpp"
 #include "runtime/task.hpp"
 
-#include <cstdint>
 #include <functional>
 #include <map>
 #include <optional>
 #include <string>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -116,8 +114,6 @@ class Mailbox {
     [[nodiscard]] std::string key_text() const {
       if constexpr (Writable<Key>)
         return text(key_);
-      else if constexpr (std::is_enum_v<Key>)
-        return text(static_cast<std::int64_t>(key_));
       else
         return index_text(key_);
     }

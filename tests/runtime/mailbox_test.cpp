@@ -163,8 +163,8 @@ TEST_CASE("a mailbox's key may be an aggregate or an enum, which a report prints
         }) == 1);
   CHECK(taken == std::vector<int>{11, 12});
   REQUIRE(said.size() == 1);
-  CHECK_THAT(said[0], Catch::Contains("a message of key [7,") &&
-                          Catch::Contains("a message of key 1 (Half)"));
+  CHECK_THAT(said[0], Catch::Contains("a message of key [7,1] (") &&
+                          Catch::Contains("::Edge) or a message of key [1] ("));
 }
 
 TEST_CASE("messages of one key that are put back together keep their order", "[runtime][mailbox]") {

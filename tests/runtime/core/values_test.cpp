@@ -277,6 +277,13 @@ TEST_CASE("an index prints as a user writes it", "[runtime]") {
   CHECK(tess::index_text(tess::Index3{1, -2, 3}) == "[1,-2,3]");
   CHECK(tess::index_text(std::string("name")) == "[\"name\"]");
   CHECK(tess::index_text(tess::Index6{{1, 2, 3, 4, 5, 6}}) == "[1,2,3,4,5,6]");
+  enum class Side { left, right };
+  struct Edge {
+    int x = 0;
+    Side side{};
+  };
+  CHECK(tess::index_text(Edge{3, Side::right}) == "[3,1]");
+  CHECK(tess::index_text(Side::right) == "[1]");
 }
 
 TEST_CASE("names are those of the source", "[runtime]") {
