@@ -13,6 +13,7 @@
 #include "runtime/chare.hpp"
 #include "runtime/scheduler/to_all.hpp"
 
+#include <concepts>
 #include <memory>
 #include <tuple>
 #include <type_traits>
@@ -80,7 +81,12 @@ CollectionId create_collection(const Range& range, Args&&... args) {
 /// Checks the class of create().
 template <class C>
 consteval void check_class() {
+  static_assert(!std::is_base_of_v<Element, C> || std::is_convertible_v<C*, Element*>,
+                "derive publicly from tess::Chare: class C : public tess::Chare<C, Index>");
   static_assert(IsChare<C>, "create<C>() needs a class C that derives from tess::Chare<C, Index>");
+  if constexpr (IsChare<C>)
+    static_assert(std::equality_comparable<typename C::Index>,
+                  "indices are compared: give the type of the index a defaulted operator==");
   static_assert(!OnePerPe<C>, "a group is made by create_group()");
 }
 
@@ -109,6 +115,9 @@ void check_creation(const Range& range) {
 /// yet.
 template <class C, class... Args>
 ArrayProxy<C> create(const Range& range, Args&&... args) {
+  if constexpr (detail::IsChare<C>)
+    static_assert(Coordinates<typename C::Index>,
+                  "an array with this type of index starts sparse: create<C>(tess::sparse)");
   detail::check_creation<C, Args...>(range);
   return ArrayProxy<C>(detail::create_collection<C>(range, std::forward<Args>(args)...));
 }

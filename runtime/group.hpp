@@ -127,6 +127,11 @@ class GroupProxy {
   [[nodiscard]] detail::FutureOf<F> reduce(Args&&... args) const {
     return detail::reduce<F>(*this, std::forward<Args>(args)...);
   }
+  /// A target for results: entry method F of all members.
+  template <auto F>
+  [[nodiscard]] auto target() const {
+    return ArrayProxy<G>(id_).template target<F>();
+  }
   /// The same group for broadcasts with a priority.
   [[nodiscard]] PrioritisedArray<G> with(Priority priority) const {
     return ArrayProxy<G>(id_).with(priority);

@@ -1,17 +1,21 @@
 // A mailbox of a chare: messages wait in it by key until a coroutine of the chare takes them.
 // Messages and coroutines may arrive in either order. It is a member of the chare; serialise it
-// with the other members, then early messages migrate with the chare.
+// with the other members, then early messages migrate with the chare. The key may be of any type
+// that is compared with < and ==.
 //
 //     tess::Mailbox<&Edge::step> edges_;     void receive(Edge e) { edges_.put(std::move(e)); }
 //     Edge edge = co_await edges_.take(step);
 #pragma once
 
+#include "runtime/core/index.hpp"
 #include "runtime/core/serialize.hpp"
 #include "runtime/task.hpp"
 
 #include <functional>
 #include <map>
 #include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
 namespace tess {
@@ -33,6 +37,11 @@ class Mailbox {
  public:
   using Key = typename detail::KeyTraits<decltype(KeyMember)>::Key;
   using Value = Message;
+  static_assert(
+      requires(const Key& key) {
+        key < key;
+        key == key;
+      }, "the key of a mailbox is compared with < and ==: give it a defaulted operator<=>");
 
   /// Passes a message to the coroutine that has waited longest for its key; if there is none, keeps
   /// it. Messages of one key are taken in the order in which they were put.
@@ -97,11 +106,17 @@ class Mailbox {
     }
     void pass_on() { box_.give_kept(key_); }
     [[nodiscard]] std::string waits_for() const {
-      return text("a message of key ", key_, " (", name_of_type<Value>, ")");
+      return text("a message of key ", key_text(), " (", name_of_type<Value>, ")");
     }
 
    private:
     friend class Mailbox;
+    [[nodiscard]] std::string key_text() const {
+      if constexpr (Writable<Key>)
+        return text(key_);
+      else
+        return index_text(key_);
+    }
     Take(Mailbox& box, Key key) : box_(box), key_(std::move(key)) {}
     Mailbox& box_;
     Key key_;

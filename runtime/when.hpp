@@ -339,8 +339,17 @@ class [[nodiscard]] WhenAny {
   bool waits_ = false;
 };
 
+template <class A>
+inline constexpr bool is_vector_variable = false;
+template <class A>
+inline constexpr bool is_vector_variable<std::vector<A>&> = true;
+template <class A>
+inline constexpr bool is_vector_variable<const std::vector<A>&> = true;
+
 template <class... A>
 consteval bool check_joined() {
+  static_assert(!(is_vector_variable<A> || ...),
+                "a vector is moved in: when_all(std::move(vector)), when_any(std::move(vector))");
   static_assert((Joinable<typename JoinAs<A>::type> && ...),
                 "when_all and when_any take asks, futures, epochs, mailbox.take(…) and "
                 "tess::sleep(…); when_all also a vector of tasks");
@@ -363,8 +372,8 @@ template <class A>
   static_assert(detail::check_joined<A>());
   return detail::WhenAll<detail::PartsOfVector<A>>(detail::PartsOfVector<A>(std::move(a)));
 }
-/// Awaits all tasks, also if one fails, and then throws the first error.
-inline Task when_all(std::vector<Task> tasks) {
+namespace detail {
+inline Task await_each(std::vector<Task> tasks) {
   std::exception_ptr error;
   for (Task& task : tasks) {
     try {
@@ -375,6 +384,7 @@ inline Task when_all(std::vector<Task> tasks) {
   }
   if (error) std::rethrow_exception(error);
 }
+<<<<<<< HEAD
 /// The same of tasks that give values: gives a vector of them.
 template <class T>
 TaskOf<std::vector<T>> when_all(std::vector<TaskOf<T>> tasks) {
@@ -390,6 +400,12 @@ TaskOf<std::vector<T>> when_all(std::vector<TaskOf<T>> tasks) {
   }
   if (error) std::rethrow_exception(error);
   co_return values;
+=======
+}  // namespace detail
+/// Awaits all tasks, also if one fails, and then throws the first error.
+inline Task when_all(std::vector<Task>&& tasks) {
+  return detail::await_each(std::move(tasks));
+>>>>>>> d7a511a712cd8fb7154d5798450d00838e8c6576
 }
 /// When awaited, gives the first result, as a variant whose index() says which one it is. If
 /// several are there, it is the first in the order of the arguments.

@@ -401,10 +401,13 @@ void Sections::describe_waiting(std::vector<std::string>& lines) const {
                              " contributes to a section that it is no member of"));
     if (SectionTotal::Incomplete found; part->total.first_incomplete(found))
       lines.push_back(text(collection_.name(), ": reduction ", found.number, " of a section has ",
-                           found.n, " contributions of ", found.n_members, " members"));
+                           found.n, found.n == 1 ? " contribution" : " contributions", " of ",
+                           found.n_members, " members"));
     if (const std::uint64_t n = part->reduction.n_waiting(); n != 0)
-      lines.push_back(text(collection_.name(), ": ", n, " contributions to a section wait on ",
-                           collection_.pe().id(), " for other members"));
+      lines.push_back(text(
+          collection_.name(), ": ", n,
+          n == 1 ? " contribution to a section waits on " : " contributions to a section wait on ",
+          collection_.pe().id(), " for other members"));
   }
   if (lists_) lists_->describe_waiting(lines);
 }

@@ -107,19 +107,23 @@ struct IndexHash {
   }
 };
 
-/// An index as text for reports: [3], [1,2,3], ["name"], or its bytes.
+/// An index as text for reports: [3], [1,2,3], ["name"], or its hash. An enum is its number.
 template <class Index>
 [[nodiscard, gnu::cold]] std::string index_text(const Index& index) {
   if constexpr (std::is_convertible_v<const Index&, std::string_view>) {
     return text("[\"", std::string_view(index), "\"]");
   } else if constexpr (Writable<Index>) {
     return text("[", index, "]");
+  } else if constexpr (std::is_enum_v<Index>) {
+    return text("[", static_cast<std::int64_t>(index), "]");
   } else if constexpr (std::is_aggregate_v<Index>) {
     std::string out = "[";
     const auto add = [&out](const auto& field) {
       if (out.size() > 1) out += ",";
       if constexpr (Writable<std::remove_cvref_t<decltype(field)>>) {
         out += text(field);
+      } else if constexpr (std::is_enum_v<std::remove_cvref_t<decltype(field)>>) {
+        out += text(static_cast<std::int64_t>(field));
       } else if constexpr (requires { field.begin(); }) {
         for (bool first = true; const auto& item : field) {
           if (!std::exchange(first, false)) out += ",";

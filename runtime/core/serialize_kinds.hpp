@@ -27,6 +27,30 @@ concept HasSerialize = requires(T& value, Writer& ar) { value.serialize(ar); };
 template <class T>
 concept HasFreeSerialize =
     !HasSerialize<T> && requires(T& value, Writer& ar) { serialize(ar, value); };
+
+/// The class that a member function is declared in.
+template <class Member>
+struct ClassOf;
+template <class F, class C>
+struct ClassOf<F C::*> : std::type_identity<C> {};
+/// True if T declares serialize() itself, or adds no members to the base class that does. A base
+/// class without members is taken to know those of T: it may have T as a parameter. `Beside` is
+/// a base class of T that is serialised elsewhere. A member in the padding of a base class is not
+/// noticed.
+template <class T, class Beside = void>
+consteval bool serialises_all() {
+  if constexpr (requires { &T::template serialize<Writer>; }) {
+    using By = typename ClassOf<decltype(&T::template serialize<Writer>)>::type;
+    if constexpr (std::is_void_v<Beside> || std::is_base_of_v<Beside, By>) {
+      return sizeof(T) == sizeof(By) || std::is_empty_v<By>;
+    } else {
+      struct Both : Beside, By {};
+      return sizeof(T) <= sizeof(Both) || std::is_empty_v<By>;
+    }
+  } else {
+    return true;
+  }
+}
 template <class T>
 concept Duration = requires { typename T::period; } && std::is_arithmetic_v<typename T::rep>;
 /// std::complex, without its header.

@@ -10,10 +10,11 @@
 //                            tess::EntryMethod<&Cell::refine, tess::Priority{5}, tess::create_home>>;
 //     };
 //
-// They hold for every message to the entry method, a priority also for its broadcasts, and
+// EntryAttributes is public. Attributes hold for every message to the entry method, a priority also for its broadcasts, and
 // inline_when_local for send() only.
 #pragma once
 
+#include "runtime/messages/class_options.hpp"
 #include "runtime/messages/entry_traits.hpp"
 
 #include <cstdint>
@@ -145,6 +146,9 @@ consteval EntryRule find_rule() {
   if constexpr (requires { typename C::EntryAttributes; }) {
     return rule_among<C, F>(static_cast<typename C::EntryAttributes*>(nullptr));
   } else {
+    static_assert(!NamesEntryAttributes<C>,
+                  "EntryAttributes is a public type of its class: move it behind `public:` (or, if "
+                  "several base classes have one, name one in the class)");
     return {};
   }
 }

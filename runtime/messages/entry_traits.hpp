@@ -146,8 +146,10 @@ template <class C, auto F, class... Args>
 consteval bool check_entry() {
   if constexpr (EntryTraits<F>::is_member) {
     using Result = typename EntryTraits<F>::Result;
-    static_assert(std::is_void_v<Result> || std::is_same_v<Result, Task>,
-                  "an entry method returns void or tess::Task");
+    static_assert(
+        std::is_void_v<Result> || std::is_same_v<Result, Task>,
+        "an entry method returns void or tess::Task; ask<&C::f>() calls a function that returns "
+        "a value");
   }
   return check_call<C, F, Args...>();
 }

@@ -355,7 +355,9 @@ void Runtime::on_census(Pe& pe, Census&& census) {
 void Runtime::end_with_census(Pe& pe) {
   if (census_.dead_letters != 0)
     error_line(text("tessera: ", census_.dead_letters,
-                    " messages to elements that had been destroyed were not delivered"));
+                    census_.dead_letters == 1
+                        ? " message to an element that had been destroyed was not delivered"
+                        : " messages to elements that had been destroyed were not delivered"));
   const bool all_arrived = report_audit();
   if (!census_.waits.empty()) {
     std::string report = "tessera: deadlock: nothing runs and nothing is under way, but " +

@@ -1,4 +1,4 @@
-// expect: an entry method returns void or tess::Task
+// expect: an entry method returns void or tess::Task; ask<&C::f>() calls a function that returns a value
 #include "runtime/runtime.hpp"
 
 class Block : public tess::Chare<Block> {

@@ -83,6 +83,11 @@ class Greeter : public tess::Group<Greeter> {
   void hello(tess::MemberProxy<Greeter> from, tess::Callback<int> target) {
     contribute(tess::sum, from == group()[tess::PeId{0}] ? 1 : 0, target);
   }
+  void add(int value) { n_ += value; }
+  [[nodiscard]] int n() { return n_; }
+
+ private:
+  int n_ = 0;
 };
 
 /// Has no default constructor.
@@ -225,6 +230,14 @@ TEST_CASE("a result without a value: futures, targets, reductions", "[api]") {
     tess::Future<int> last;
     nodes[{6}].send<&Node::tell>(last.callback());
     CHECK(co_await last == 77);
+
+    const auto members = tess::create_group<Greeter>();
+    const tess::Callback<int> all = members.target<&Greeter::add>();
+    co_await tess::epoch([&] { all(5); });
+    for (int pe = 0; pe < tess::n_pes(); ++pe) {
+      const int n = co_await members[tess::PeId{pe}].ask<&Greeter::n>();
+      CHECK(n == 5);
+    }
   });
 }
 

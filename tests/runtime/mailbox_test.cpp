@@ -118,6 +118,55 @@ void put_back() {
                     [] { tess::create<Returner>(tess::range(2))[{0}].template send<F>(); }) == 0);
 }
 
+enum class Side { left, right };
+struct Place {
+  int step = 0;
+  Side side{};
+  friend auto operator<=>(const Place&, const Place&) = default;
+};
+struct Edge {
+  Place place;
+  int value = 0;
+};
+struct Half {
+  Side side{};
+};
+
+/// Its mailboxes have an aggregate and an enum as keys.
+class Joiner : public tess::Chare<Joiner> {
+ public:
+  tess::Task join() {
+    for (const Side side : {Side::left, Side::right})
+      taken.push_back((co_await edges_.take({2, side})).value);
+    (void)co_await tess::when_any(edges_.take({7, Side::right}), halves_.take(Side::right));
+  }
+  void put(int step, Side side, int value) { edges_.put({{step, side}, value}); }
+
+ private:
+  tess::Mailbox<&Edge::place> edges_;
+  tess::Mailbox<&Half::side> halves_;
+};
+
+TEST_CASE("a mailbox's key may be an aggregate or an enum, which a report prints",
+          "[runtime][mailbox]") {
+  taken.clear();
+  std::vector<std::string> said;
+  tess::Setup setup;
+  setup.machine = tess::make_simulated_machine({});
+  setup.options.report = [&said](const std::string& line) { said.push_back(line); };
+  CHECK(tess::run(setup, [] {
+          const auto joiner = tess::create<Joiner>(tess::range(1))[0];
+          joiner.send<&Joiner::put>(2, Side::right, 12);
+          joiner.send<&Joiner::put>(3, Side::left, 13);
+          joiner.send<&Joiner::put>(2, Side::left, 11);
+          joiner.send<&Joiner::join>();
+        }) == 1);
+  CHECK(taken == std::vector<int>{11, 12});
+  REQUIRE(said.size() == 1);
+  CHECK_THAT(said[0], Catch::Contains("a message of key [7,1] (") &&
+                          Catch::Contains("::Edge) or a message of key [1] ("));
+}
+
 TEST_CASE("messages of one key that are put back together keep their order", "[runtime][mailbox]") {
   put_back<&Returner::fail_with_three>();
   CHECK(taken == std::vector<int>{0, 1, 2});

@@ -151,7 +151,7 @@ TEST_CASE("an exception of an inline entry method ends the job and names its ele
 TEST_CASE("an element that ends inside a send() gets no more messages", "[runtime][priority]") {
   REQUIRE(act<&Actor::leave_inside>(2) == 0);
   REQUIRE(said.size() == 1);
-  CHECK_THAT(said[0], Catch::Contains("1 messages to elements that had been destroyed"));
+  CHECK_THAT(said[0], Catch::Contains("1 message to an element that had been destroyed"));
 }
 
 TEST_CASE("an element that ends or moves inside a send() stays until the sender's message is done",

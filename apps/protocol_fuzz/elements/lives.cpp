@@ -193,9 +193,10 @@ void lives(Trial& trial) {
   const auto n_dead =
       std::accumulate(here.dead_letters.begin(), here.dead_letters.end(), std::uint64_t{0});
   const std::string dead =
-      n_dead == 0 ? ""
-                  : text("tessera: ", n_dead,
-                         " messages to elements that had been destroyed were not delivered\n");
+      n_dead == 0   ? ""
+      : n_dead == 1 ? "tessera: 1 message to an element that had been destroyed was not delivered\n"
+                    : text("tessera: ", n_dead,
+                           " messages to elements that had been destroyed were not delivered\n");
   trial.expect(ending.report == dead, "the report is not that of ", n_dead, ": ", ending.report);
   trial.expect(mode == 0 || n_dead == 0, "dead letters in an array that has none: ", n_dead);
   for (const int delivered : here.delivered)

@@ -468,7 +468,8 @@ void SectionListsOf<Index>::describe_waiting(std::vector<std::string>& lines) co
     std::size_t missing = 0;
     while (roster.members()[missing].state != SectionRoster::State::unjoined) ++missing;
     lines.push_back(text(
-        of.root.kept.size(), " multicasts of a section of ", array_.name(), " wait for ",
+        of.root.kept.size(), of.root.kept.size() == 1 ? " multicast" : " multicasts",
+        " of a section of ", array_.name(), of.root.kept.size() == 1 ? " waits" : " wait", " for ",
         array_.name(), index_text(of.root.indices[missing]),
         roster.n_unjoined() > 1 ? " and others, which do not exist" : ", which does not exist"));
   }

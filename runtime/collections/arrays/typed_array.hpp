@@ -12,8 +12,11 @@
 #include "runtime/collections/arrays/routing.hpp"
 #include "runtime/collections/arrays/saving.hpp"
 #include "runtime/collections/elements/make_chare.hpp"
+#include "runtime/messages/class_options.hpp"
 
 #include <array>
+#include <concepts>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
@@ -50,6 +53,39 @@ concept SharedInProcess = requires { C::shared_in_process; };
 template <class C>
 concept Absorbs = requires(C& member, C& other) { member.absorb(std::move(other)); };
 
+/// A class that chooses the homes of its elements.
+template <class C>
+concept ChoosesHomes = requires(const typename C::Index& index, std::int32_t n_pes) {
+  { C::place(index, n_pes) } -> std::same_as<PeId>;
+};
+
+/// A class that says what happens to messages to its destroyed elements.
+template <class C>
+concept SaysDeadLetters =
+    requires { typename std::integral_constant<DeadLetters, C::dead_letters>; };
+
+/// A class that describes the state of an element in reports.
+template <class C>
+concept DescribesState = requires(const C& c) {
+  { c.describe_state() } -> std::convertible_to<std::string>;
+};
+
+/// Refuses options of the class that would be ignored.
+template <class C>
+consteval bool check_options() {
+  static_assert(ChoosesHomes<C> || OnePerPe<C> || !NamesPlace<C>,
+                "place() of a chare is `static tess::PeId place(const Index&, std::int32_t n_pes)` "
+                "and public; a member for another purpose needs another name");
+  static_assert(
+      SaysDeadLetters<C> || !NamesDeadLetters<C>,
+      "dead_letters of a chare is `static constexpr auto dead_letters = "
+      "tess::DeadLetters::…` and public; a member for another purpose needs another name");
+  static_assert(DescribesState<C> || !NamesDescribeState<C>,
+                "describe_state() of a chare is `std::string describe_state() const` and public; a "
+                "member for another purpose needs another name");
+  return true;
+}
+
 /// Indices spread over all PEs.
 template <class Index>
 [[nodiscard]] PeId home_by_hash(const Index& index, std::int32_t n_pes) {
@@ -70,7 +106,9 @@ class Array final : public ArrayOf<typename C::Index> {
   using Indexed = typename Base::Indexed;
 
   Array(Pe& pe, CollectionId id, const Range& range)
-      : Base(pe, id, plain_name(name_of_type<C>), range) {}
+      : Base(pe, id, plain_name(name_of_type<C>), range) {
+    static_assert(check_options<C>());
+  }
   Array(const Array&) = delete;
   Array& operator=(const Array&) = delete;
   ~Array() override { this->destroy_all(); }
@@ -78,7 +116,7 @@ class Array final : public ArrayOf<typename C::Index> {
   [[nodiscard]] PeId home(const Index& index) const override {
     if (this->index_map() != nullptr) [[unlikely]]
       return this->mapped_home(&index);
-    if constexpr (requires { C::place(index, this->pe_.n_pes()); }) {
+    if constexpr (ChoosesHomes<C>) {
       const PeId at = placed(index);
       if (at.value < 0 || at.value >= this->pe_.n_pes()) this->refuse_place(index_text(index), at);
       return at;
@@ -98,7 +136,7 @@ class Array final : public ArrayOf<typename C::Index> {
     constexpr bool constructs =
         sizeof...(Args) > 0 || OnePerPe<C> || std::is_default_constructible_v<C>;
     if constexpr (Coordinates<Index> && constructs) {
-      constexpr bool places = !OnePerPe<C> && requires(Index i) { C::place(i, 1); };
+      constexpr bool places = !OnePerPe<C> && ChoosesHomes<C>;
       this->construct_initial([&] {
         const std::pair<std::int64_t, std::int64_t> ranks = this->ranks_of_blocks(places);
         for (std::int64_t rank = ranks.first; rank < ranks.second; ++rank) {
@@ -116,6 +154,9 @@ class Array final : public ArrayOf<typename C::Index> {
   /// Writes an element: its index, its state and the user's members.
   static void pack_element(Element& element, Writer& ar) {
     if constexpr (Migratable<C>) {
+      static_assert(serialization::serialises_all<C, Indexed>(),
+                    "serialize() is inherited from a base class and leaves out the members of this "
+                    "class: define it here, and call that of the base class in it");
       C& chare = static_cast<C&>(element);
       ar(own(chare).index_, own(chare).state_);
       Base::pack_record(own(chare), ar);
@@ -143,8 +184,7 @@ class Array final : public ArrayOf<typename C::Index> {
     }
   }
   [[nodiscard]] std::string state_of(const Element& element) const override {
-    if constexpr (requires(const C& c) { c.describe_state(); })
-      return static_cast<const C&>(element).describe_state();
+    if constexpr (DescribesState<C>) return static_cast<const C&>(element).describe_state();
     return Base::state_of(element);
   }
   [[nodiscard]] bool migratable() const override { return Migratable<C> && !OnePerPe<C>; }
@@ -223,7 +263,7 @@ class Array final : public ArrayOf<typename C::Index> {
     }
   }
   [[nodiscard]] DeadLetters dead_letters() const override {
-    if constexpr (requires { C::dead_letters; }) {
+    if constexpr (SaysDeadLetters<C>) {
       return C::dead_letters;
     } else {
       return DeadLetters::report;

@@ -276,8 +276,9 @@ void ReductionTree::complete_if_whole() {
 void ReductionTree::describe_waiting(std::vector<std::string>& lines) const {
   for (const auto& [number, gathering] : gathering_) {
     if (gathering.n == 0 && ready(number)) continue;
-    lines.push_back(text(words_.name, " ", number, " has ", gathering.n, " contributions on ",
-                         here_, "; it waits for ",
+    lines.push_back(text(words_.name, " ", number, " has ", gathering.n,
+                         gathering.n == 1 ? " contribution on " : " contributions on ", here_,
+                         "; it waits for ",
                          ready(number) ? "other PEs" : words_.missing_before(number + 1)));
   }
   // Elements that arrived after this PE had reported; the reductions that they have yet to
@@ -287,7 +288,8 @@ void ReductionTree::describe_waiting(std::vector<std::string>& lines) const {
                          words_.missing_before(next_report_)));
   for (const auto& [number, whole] : whole_) {
     if (whole.sum.n != 0)
-      lines.push_back(text(words_.name, " ", number, " has ", whole.sum.n, " contributions of ",
+      lines.push_back(text(words_.name, " ", number, " has ", whole.sum.n,
+                           whole.sum.n == 1 ? " contribution of " : " contributions of ",
                            members_ + whole.sum.change, " members"));
   }
 }

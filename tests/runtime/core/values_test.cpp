@@ -93,6 +93,33 @@ void serialize(Ar& ar, Foreign& foreign) {
   if (Ar::is_reading) foreign = Foreign(value);
 }
 
+/// Serialises what derives from it.
+template <class Derived>
+struct ByItsFields {
+  template <class Ar>
+  void serialize(Ar& ar) {
+    static_cast<Derived&>(*this).fields(ar);
+  }
+};
+class Fielded : public ByItsFields<Fielded> {
+ public:
+  explicit Fielded(int value = 0) : value_(value) {}
+  template <class Ar>
+  void fields(Ar& ar) {
+    ar(value_);
+  }
+  friend bool operator==(const Fielded& a, const Fielded& b) { return a.value_ == b.value_; }
+
+ private:
+  int value_;
+};
+/// Adds no members.
+class NamedFielded : public Fielded {
+ public:
+  static constexpr int limit = 3;
+  using Fielded::Fielded;
+};
+
 struct Shape {
   int n = 0;
   Shape() = default;
@@ -184,6 +211,12 @@ TEST_CASE("a function beside the type serialises a class of another library",
   CHECK(tess::round_trip_difference(Foreign(3)).empty());
 }
 
+TEST_CASE("a serialize() that is inherited serves a class without members of its own",
+          "[runtime][serialize]") {
+  check_round_trip(Fielded(3));
+  check_round_trip(std::vector<NamedFielded>{NamedFielded(4), NamedFielded(5)});
+}
+
 TEST_CASE("a unique_ptr to a class with virtual functions comes back", "[runtime][serialize]") {
   auto shape = std::make_unique<Shape>();
   shape->n = 4;
@@ -244,6 +277,13 @@ TEST_CASE("an index prints as a user writes it", "[runtime]") {
   CHECK(tess::index_text(tess::Index3{1, -2, 3}) == "[1,-2,3]");
   CHECK(tess::index_text(std::string("name")) == "[\"name\"]");
   CHECK(tess::index_text(tess::Index6{{1, 2, 3, 4, 5, 6}}) == "[1,2,3,4,5,6]");
+  enum class Side { left, right };
+  struct Edge {
+    int x = 0;
+    Side side{};
+  };
+  CHECK(tess::index_text(Edge{3, Side::right}) == "[3,1]");
+  CHECK(tess::index_text(Side::right) == "[1]");
 }
 
 TEST_CASE("names are those of the source", "[runtime]") {
