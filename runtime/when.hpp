@@ -384,10 +384,8 @@ inline Task await_each(std::vector<Task> tasks) {
   }
   if (error) std::rethrow_exception(error);
 }
-<<<<<<< HEAD
-/// The same of tasks that give values: gives a vector of them.
 template <class T>
-TaskOf<std::vector<T>> when_all(std::vector<TaskOf<T>> tasks) {
+TaskOf<std::vector<T>> await_each(std::vector<TaskOf<T>> tasks) {
   std::vector<T> values;
   std::exception_ptr error;
   for (TaskOf<T>& task : tasks) {
@@ -400,12 +398,16 @@ TaskOf<std::vector<T>> when_all(std::vector<TaskOf<T>> tasks) {
   }
   if (error) std::rethrow_exception(error);
   co_return values;
-=======
+}
 }  // namespace detail
 /// Awaits all tasks, also if one fails, and then throws the first error.
 inline Task when_all(std::vector<Task>&& tasks) {
   return detail::await_each(std::move(tasks));
->>>>>>> d7a511a712cd8fb7154d5798450d00838e8c6576
+}
+/// The same of tasks that give values: gives a vector of them.
+template <class T>
+TaskOf<std::vector<T>> when_all(std::vector<TaskOf<T>>&& tasks) {
+  return detail::await_each(std::move(tasks));
 }
 /// When awaited, gives the first result, as a variant whose index() says which one it is. If
 /// several are there, it is the first in the order of the arguments.
