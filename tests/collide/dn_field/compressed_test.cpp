@@ -101,11 +101,11 @@ TEST_CASE("a compressed field is cut off where the flat one is, and has no norma
         for (std::size_t v = 0; v < n; ++v) {
           const bool has = normal.x[v] != 0 || normal.y[v] != 0 || normal.z[v] != 0;
           if (flat.normal[v] != no_normal) {
-            n_lost += has ? 0 : 1;
+            if (!has) ++n_lost;
           } else if (std::abs(flat.distance[v]) >= static_cast<float>(flat.thickness)) {
             ++n_far;
-            n_nearer += std::abs(distance[v]) < static_cast<float>(flat.thickness) ? 1 : 0;
-            n_normals += has ? 1 : 0;
+            if (std::abs(distance[v]) < static_cast<float>(flat.thickness)) ++n_nearer;
+            if (has) ++n_normals;
           }
         }
         CAPTURE(surface.triangles.size(), thickness, cells);
