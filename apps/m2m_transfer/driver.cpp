@@ -1,5 +1,6 @@
 #include "apps/m2m_transfer/driver.hpp"
 
+#include "apps/command_line.hpp"
 #include "apps/m2m_transfer/contradictions.hpp"
 #include "apps/m2m_transfer/drive_files.hpp"
 #include "apps/m2m_transfer/output/drift.hpp"

@@ -13,7 +13,7 @@ namespace tess::detail {
 
 struct OptionNames {
   struct EntryAttributes;
-  int place, dead_letters, describe_state;
+  int dead_letters, describe_state;
 };
 template <class C>
 struct WithOptionNames : C, OptionNames {
@@ -24,8 +24,6 @@ struct WithOptionNames : C, OptionNames {
 template <class C>
 concept NamesEntryAttributes =
     !std::is_final_v<C> && !requires { typename WithOptionNames<C>::EntryAttributes; };
-template <class C>
-concept NamesPlace = !std::is_final_v<C> && !requires { &WithOptionNames<C>::place; };
 template <class C>
 concept NamesDeadLetters = !std::is_final_v<C> && !requires { &WithOptionNames<C>::dead_letters; };
 template <class C>

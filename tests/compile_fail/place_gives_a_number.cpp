@@ -1,4 +1,4 @@
-// expect: place() of a chare is `static tess::PeId place(const Index&, std::int32_t n_pes)` and public
+// expect: place() of a chare is `static tess::PeId place(const Index&, std::int32_t n_pes)`
 #include "runtime/runtime.hpp"
 
 class Block : public tess::Chare<Block> {

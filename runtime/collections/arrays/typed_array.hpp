@@ -59,6 +59,21 @@ concept ChoosesHomes = requires(const typename C::Index& index, std::int32_t n_p
   { C::place(index, n_pes) } -> std::same_as<PeId>;
 };
 
+/// A class with a public place() for indices that is not static, lacks the number of PEs or gives a
+/// number: it would be ignored.
+template <class C>
+concept ChoosesHomesWrongly =
+    !ChoosesHomes<C> && (
+                            requires(C& chare, const typename C::Index& index) {
+                              { chare.place(index) } -> std::same_as<PeId>;
+                            } ||
+                            requires(C& chare, const typename C::Index& index, std::int32_t n_pes) {
+                              { chare.place(index, n_pes) } -> std::same_as<PeId>;
+                            } ||
+                            requires(const typename C::Index& index, std::int32_t n_pes) {
+                              { C::place(index, n_pes) } -> std::integral;
+                            });
+
 /// A class that says what happens to messages to its destroyed elements.
 template <class C>
 concept SaysDeadLetters =
@@ -73,9 +88,9 @@ concept DescribesState = requires(const C& c) {
 /// Refuses options of the class that would be ignored.
 template <class C>
 consteval bool check_options() {
-  static_assert(ChoosesHomes<C> || OnePerPe<C> || !NamesPlace<C>,
-                "place() of a chare is `static tess::PeId place(const Index&, std::int32_t n_pes)` "
-                "and public; a member for another purpose needs another name");
+  static_assert(
+      !ChoosesHomesWrongly<C>,
+      "place() of a chare is `static tess::PeId place(const Index&, std::int32_t n_pes)`");
   static_assert(
       SaysDeadLetters<C> || !NamesDeadLetters<C>,
       "dead_letters of a chare is `static constexpr auto dead_letters = "
