@@ -245,8 +245,8 @@ Task AnyCoupling::collide_covers() {
   co_await collide::run_collision(setup.collider, to_target);
 }
 
-/// Only points that are in no tetrahedron need to know all source pieces, and pieces without sources
-/// one of them.
+/// Only points that are in no tetrahedron need to know all source pieces, and pieces without
+/// sources one of them.
 TaskOf<LedgerPage> AnyCoupling::find_donors() {
   const CouplingSetup& setup = state_->setup;
   co_await epoch([&] { setup.target.broadcast<&AnyPiece::m2m_ask>(setup.id); });
@@ -279,7 +279,8 @@ Task AnyCoupling::find_overlaps() {
   co_await epoch([&] { setup.target.broadcast<&AnyPiece::m2m_finish_search>(setup.id); });
 }
 
-Task AnyCoupling::apply(detail::Giver give, detail::Taker take) {
+Task AnyCoupling::apply(detail::Giver give, detail::Taker take,
+                        std::function<void(CouplingId)> last) {
   State& state = *state_;
   const CouplingSetup& setup = state.setup;
   TESS_CHECK(setup.id != CouplingId{},
@@ -295,6 +296,7 @@ Task AnyCoupling::apply(detail::Giver give, detail::Taker take) {
     setup.source.broadcast<&AnyPiece::m2m_give_values>(id, give, take);
     setup.target.broadcast<&AnyPiece::m2m_take_if_alone>(id, take);
   });
+  if (last) co_await epoch([&] { last(setup.id); });
   turns->pass_on(take->channel);
 }
 

@@ -124,7 +124,7 @@ class AnyCoupling {
 
  protected:
   AnyCoupling(PieceArray source, PieceArray target, CouplingOptions options);
-  Task apply(detail::Giver give, detail::Taker take);
+  Task apply(detail::Giver give, detail::Taker take, std::function<void(CouplingId)> last);
 
  private:
   struct State;
@@ -152,7 +152,8 @@ class Coupling : public AnyCoupling {
   /// Gives the field that Give shows to the memory that Take shows, for example
   /// apply<&Fluid::temperature, &Solid::heat>(). When the task is done, all target pieces have it.
   /// Applications to the same Take run one after the other, in the order of the calls. What
-  /// received() causes must not await another one to the same Take: both would wait for ever.
+  /// received() causes must not start another one to the same Take: neither would end. `last` runs
+  /// in an epoch of its own before the next one begins.
   ///   Give: std::span<const double> S::f() const, n_points × n_components, ghosts included; if
   ///     source_values are cells, a row per tetrahedron, or four if they are corners
   ///   Take: std::span<double> T::g(), n_owned × n_components; points without a donor keep theirs;
@@ -160,9 +161,9 @@ class Coupling : public AnyCoupling {
   /// Each may take the CouplingId. Each may also be a public std::vector<double>, such as
   /// &S::field.
   template <auto Give, auto Take>
-  Task apply() {
+  Task apply(std::function<void(CouplingId)> last = {}) {
     return AnyCoupling::apply(detail::Giver(detail::GiverOf<S, Give>::kind),
-                              detail::Taker(detail::TakerOf<T, Take>::kind));
+                              detail::Taker(detail::TakerOf<T, Take>::kind), std::move(last));
   }
 };
 

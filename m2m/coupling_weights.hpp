@@ -25,12 +25,11 @@ struct GlobalRows;
 /// Throws Error (bad_argument) unless values of this kind are a matrix times the source values.
 void require_weights(TransferKind kind, bool clamp);
 
-/// Collects the donors of the last search, since which no piece has changed; none is under way.
-/// Points are named by MeshView::point_ids, which must be 0
-/// to n_sources - 1 and 0 to n_targets - 1. For linear couplings apply() of the matrix gives the
-/// bits of the coupling; for second_order the same up to rounding; `limited` has no weights and is
-/// refused. Targets outside the source have no weights, except those with the nearest vertex
-/// (Nearest): one weight of 1.
+/// Collects the donors of the last search. No search is under way, and no piece has changed since
+/// the last one. Points are named by MeshView::point_ids, which must be 0 to n_sources - 1 and 0 to
+/// n_targets - 1. For linear couplings apply() of the matrix gives the bits of the coupling; for
+/// second_order the same up to rounding; `limited` has no weights and is refused. Targets outside
+/// the source have no weights, except those with the nearest vertex (Nearest): one weight of 1.
 TaskOf<WeightMatrix> collect_weights(const AnyCoupling& coupling, std::int64_t n_sources,
                                      std::int64_t n_targets);
 

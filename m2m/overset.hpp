@@ -32,7 +32,7 @@
 //
 // After that, apply() takes fields; a piece uses those of mesh k where iblank() is -k. With three or
 // more meshes several couplings give a piece values, each to memory of its own: like offered(), the
-// accessor takes the CouplingId. If a mesh moves: cut, search and settle again. Send a large wall in
+// accessor takes the CouplingId. If a mesh moves: cut, search, apply the flags and settle again. Send a large wall in
 // parts (Wall::seen_from()). A body that contains no point of another mesh cuts no hole.
 //
 // Roles, donors and qualities depend only on the meshes and the walls: not on the number of PEs or

@@ -23,13 +23,9 @@ Transfer::Transfer(const DistributedMesh& source, const DistributedMesh& target,
 }
 
 Task Transfer::apply() {
-  // Until the commit, which would take what a later one has given so far.
-  constexpr std::uint64_t all_fields = 0;
-  const std::shared_ptr<Turns> turns = turns_;
-  co_await turns->take(all_fields);
-  co_await coupling_.apply<&Worker::values, &Worker::pending>();
-  co_await epoch([&] { target_.broadcast<&Worker::commit>(coupling_.id()); });
-  turns->pass_on(all_fields);
+  // A commit after the next application has begun would take what that has given so far.
+  return coupling_.apply<&Worker::values, &Worker::pending>(
+      [target = target_](CouplingId id) { target.broadcast<&Worker::commit>(id); });
 }
 
 TaskOf<TransferSummary> transfer(DistributedMesh source, DistributedMesh target,

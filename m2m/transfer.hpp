@@ -47,11 +47,8 @@
 #pragma once
 
 #include "m2m/coupling.hpp"
-#include "m2m/parallel/turns.hpp"
 #include "m2m/workers/scatter.hpp"
 #include "m2m/workers/worker.hpp"
-
-#include <memory>
 
 namespace tess::m2m {
 
@@ -76,7 +73,6 @@ class Transfer {
  private:
   Coupling<Worker, Worker> coupling_;
   ArrayProxy<Worker> target_;
-  std::shared_ptr<Turns> turns_ = std::make_shared<Turns>();
 };
 
 /// Times and counts of one transfer. Times are wall-clock seconds on the calling PE.

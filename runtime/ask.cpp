@@ -12,7 +12,9 @@ AskBase::AskBase(AskBase&& other) noexcept
       timer_(std::exchange(other.timer_, 0)),
       limit_(other.limit_) {
   TESS_CHECK(other.waiting_ == nullptr, "an ask is moved while a coroutine waits for it");
-  if (id_ != 0) pe_->move_future(id_, this);
+  if (id_ == 0) return;
+  require_here();
+  pe_->move_future(id_, this);
 }
 
 void AskBase::await_suspend(Task::Handle task) {
@@ -42,6 +44,7 @@ WaitReason AskBase::reply_of(CollectionId of, std::uint64_t hash, std::string na
 
 void AskBase::set_deadline(Time limit) {
   if (id_ == 0) return;  // the reply is there
+  require_here();
   limit_ = limit;
   if (timer_ != 0) pe_->timers().cancel(timer_);
   timer_ = pe_->timers().after(limit, [pe = pe_, id = id_] {
@@ -67,9 +70,10 @@ void AskBase::require_here() const {
 
 void AskBase::leave() {
   if (id_ == 0 && timer_ == 0) return;
-  const Pe* const here = current_pe_or_null();
-  if (here != pe_ && (here == nullptr || here->stopped())) return;  // the run is over
-  require_here();
+  if (const Pe* const here = current_pe_or_null(); here != pe_) [[unlikely]] {
+    if (here == nullptr || here->stopped()) return;  // the run is over
+    require_here();
+  }
   if (id_ != 0) pe_->leave_future(std::exchange(id_, 0));
   if (timer_ != 0) pe_->timers().cancel(std::exchange(timer_, 0));
 }

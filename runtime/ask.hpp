@@ -6,8 +6,9 @@
 //     // …
 //     co_await wells[{2}].ask<&Well::slow>().within(5us);
 //
-// The function returns a value or nothing, or is a coroutine (tess::Task, tess::TaskOf<T>), whose end
-// is awaited. An Error that it throws, and one that says that no reply came within the limit, are thrown here.
+// The function returns a value or nothing, or is a coroutine (tess::Task, tess::TaskOf<T>), whose
+// end is awaited. An Error that it throws, and one that says that no reply came within the limit,
+// are thrown here.
 //
 // An ask is a message with the number of a place on the asking PE; the reply is a message to that
 // place. The call is sent when ask() is called, so several may be under way at once: see when.hpp.

@@ -7,14 +7,14 @@
 // The callback can be sent anywhere; the result arrives at the PE on which callback() was called
 // first. It is taken once (a second co_await ends the job), and the future must outlive it: make it
 // a local variable of the coroutine that awaits it, or a member of an element that does not migrate
-// between callback() and the end of co_await (a check ends the job otherwise). A Future<void> gets
-// no value.
+// between callback() and the arrival of the result (a check ends the job otherwise). A Future<void>
+// gets no value.
 //
 // The same in one line, where the callback is the last argument of a broadcast:
 //
 //     const double t = co_await blocks.reduce<&Block::add>();
 //
-// The future is in its PE's table, by number, from its first use until its result is taken.
+// The future is in its PE's table, by number, from its first use until its result is there.
 #pragma once
 
 #include "runtime/callback.hpp"
@@ -78,7 +78,6 @@ class Future {
   }
   T await_resume() {
     waiting_ = nullptr;
-    leave();
     if constexpr (!std::is_void_v<T>) {
       TESS_CHECK(!std::exchange(taken_, true), waits_for(),
                  " is awaited again: the first co_await took its result, so keep that");
@@ -117,6 +116,7 @@ class Future {
     auto* future = static_cast<Future*>(pe.require_future(result.id));
     TESS_CHECK(!future->value_, future->waits_for(), " was given two results: it takes one");
     future->value_ = std::move(result.value);
+    pe.leave_future(std::exchange(future->id_, 0));
     if (future->waiting_ != nullptr) future->waiting_->wake();
     pe.completion().processed(pe.context().epoch);
   }
@@ -138,14 +138,15 @@ class Future {
   /// Another thread runs the PE that knows it.
   void require_here() const {
     TESS_CHECK(pe_ == &current_pe(), "a future of ", pe_->id(), " is used on ", current_pe().id(),
-               ": its element has migrated before its result was taken; make it a local variable "
+               ": its element has migrated before its result was there; make it a local variable "
                "of the coroutine that awaits it, or migrate after that");
   }
   void leave() {
     if (id_ == 0) return;
-    const Pe* const here = detail::current_pe_or_null();
-    if (here != pe_ && (here == nullptr || here->stopped())) return;  // the run is over
-    require_here();
+    if (const Pe* const here = detail::current_pe_or_null(); here != pe_) [[unlikely]] {
+      if (here == nullptr || here->stopped()) return;  // the run is over
+      require_here();
+    }
     pe_->leave_future(std::exchange(id_, 0));
   }
   void take(Future& other) {

@@ -312,12 +312,12 @@ class [[nodiscard]] WhenAny {
   typename P::First await_resume() {
     const std::size_t which = find();
     if (waits_) {
-      const void* first = nullptr;
+      const void* used = nullptr;
       std::size_t i = 0;
       parts_.each([&](const auto& part) {
-        if (i++ == which) first = &part;
+        if (i++ == which) used = &part;
       });
-      withdraw(parts_, [first](const auto& part) { return &part != first; });
+      withdraw(parts_, [used](const auto& part) { return &part != used; });
     }
     return parts_.first(which);
   }

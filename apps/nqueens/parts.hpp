@@ -12,9 +12,9 @@
 
 namespace nqueens {
 
-/// As search(). After a restart n and `first` of the problem are those of the checkpoint, and a grain
-/// that is not given is the default for that n. Throws tess::Error if it,
-/// or the number of solutions that is expected, does not fit them.
+/// As search(). After a restart n and `first` of the problem are those of the checkpoint, and a
+/// grain that is not given is the default for that n. Throws tess::Error if it, or the number of
+/// solutions that is expected, does not fit them.
 tess::Task search_in_parts(Problem& problem, std::optional<std::int32_t> grain,
                            std::optional<std::uint64_t> expected, apps::Checkpoints& checkpoints,
                            Outcome& outcome);

@@ -46,8 +46,8 @@ tess::Task simulated(Problem& problem, apps::Progress& progress) {
     progress.clear();
     tess::print(study_table(problem.report.study));
     if (!options.out.empty()) write_study(options.out, problem.report.study);
+    write_json();
   }
-  write_json();
 }
 
 /// Bad input is reported before the run starts.
@@ -73,6 +73,8 @@ int drive(tess::Setup& setup, const Options& options) {
   if (options.study && problem.scene.objects.empty())
     tess::fail(tess::ErrorCode::bad_value, options.scene,
                ": objects: is empty; --study needs an object to bounce off");
+  if (options.study)
+    for (const SceneObject& object : problem.scene.objects) require_normals(object);
   check_memory(problem.scene, machine.n_processes());
   prepare_files(problem.scene, options, setup.options.trace);
   if (options.explain && machine.process().value == 0)

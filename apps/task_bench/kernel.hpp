@@ -47,8 +47,8 @@ void execute(const Kernel& kernel, std::int64_t iterations, std::int64_t step,
 /// bytes at 20 GB/s.
 [[nodiscard]] std::int64_t virtual_nanoseconds(const Kernel& kernel, std::int64_t iterations);
 
-/// The seconds that a task of so many iterations takes on this core; measured in some milliseconds, or
-/// two tasks if they take longer.
+/// The seconds that a task of so many iterations takes on this core; measured in some milliseconds,
+/// or two tasks if they take longer.
 [[nodiscard]] double calibrate(const Kernel& kernel, std::int64_t iterations);
 
 /// As Task Bench counts them.

@@ -22,8 +22,8 @@ struct Surface {
   }
 };
 
-/// Calls visit(Vec3) for each corner of each triangle: for a vertex as often as triangles use it, and
-/// not for others, which a mesh may hold anywhere.
+/// Calls visit(Vec3) for each corner of each triangle: for a vertex as often as triangles use it,
+/// and not for others, which a mesh may hold anywhere.
 template <class Visit>
 void each_corner(const Surface& surface, const Visit& visit) {
   for (const auto& triangle : surface.triangles)

@@ -1,7 +1,7 @@
-// Applications that write the same member of the target take turns, in the order of the calls. If
-// two ran at once, messages of the later round could arrive first and wait in Rounds for the other
-// round. They are done as far as their epoch knows, so its task would end before its values are
-// written. The copies of a handle share this, on their PE.
+// Applications by one coupling that write the same member of the target take turns, in the order of
+// the calls. If two ran at once, messages of the later round could arrive first and wait in Rounds
+// for the other round. They are done as far as their epoch knows, so its task would end before its
+// values are written. The copies of a handle share this, on their PE.
 #pragma once
 
 #include "runtime/future.hpp"

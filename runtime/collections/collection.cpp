@@ -213,8 +213,6 @@ void Collection::apply(const NumberedCall& call) {
   for (std::size_t i = 0; i < n; ++i) {
     Element* element = elements_[i];
     if (element == nullptr || element->state_.seen_broadcast >= call.number) continue;
-    if (is_over(*element)) [[unlikely]]
-      continue;  // it would have ended by now
     this->call(*element, call);
     if (pe_.stopped()) break;
   }
@@ -361,13 +359,12 @@ void Collection::move(Element& element, PeId to) {
 }
 
 void Collection::settle_later(Element& element) {
-  Pe& pe = current_pe();
   hold(element);
-  const Context& context = pe.context();
-  auto* message =
-      pe.stamp(make_message<&run_settling>(pe, Settling{&element, context.led_by, context.led_in}));
-  pe.completion().sent(message->epoch);
-  pe.run_next(message);
+  const Context& context = pe_.context();
+  auto* message = pe_.stamp(
+      make_message<&run_settling>(pe_, Settling{&element, context.led_by, context.led_in}));
+  pe_.completion().sent(message->epoch);
+  pe_.run_next(message);
 }
 
 void Collection::resume(Element& element) {

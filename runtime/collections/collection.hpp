@@ -164,7 +164,7 @@ class Collection : public HostedCollection {
     --element.n_held_;
   }
   /// True if the element has called destroy(), and none of its code runs outside the present
-  /// message or waits: it stays only since it is held, and gets no more calls of all.
+  /// message or waits: it stays only since it is held.
   [[nodiscard]] bool is_over(const Element& element) const {
     const std::uint32_t runs_now = pe_.context().element == &element ? 1 : 0;
     return element.destroy_requested_ && element.n_suspended_ == element.n_held_ + runs_now;
@@ -201,7 +201,7 @@ class Collection : public HostedCollection {
   virtual void settle(Element& element) = 0;
   /// Holds the element until the running message is done, and settles it then. The current epoch
   /// waits for this.
-  static void settle_later(Element& element);
+  void settle_later(Element& element);
 
   /// A constructor requests something that needs the element to be listed: `call` runs once it is.
   /// For initial elements of an array, `call` runs once all of them are listed on this PE.

@@ -299,7 +299,7 @@ void Writer::put(const T& value) {
     bytes(&value, sizeof value);
   } else if constexpr (HasSerialize<T>) {
     static_assert(serialises_all<T>(),
-                  "serialize() is inherited from a base class and leaves out the members of this "
+                  "serialize() is inherited from a base class and may leave out members of this "
                   "class: define it here, and call that of the base class in it");
     if constexpr (GivesMembers<T>) {
       const_cast<T&>(value).serialize(*this);
@@ -345,8 +345,8 @@ template <class T>
 void Writer::put_items(const T& container) {
   using namespace serialization;
   using Each = typename T::value_type;
-  static_assert(!std::is_aggregate_v<T>,
-                "an aggregate that is also a container may have members of its own: it needs "
+  static_assert(!holds_more<T>(),
+                "an aggregate that is also a container has members of its own: it needs "
                 "`template <class Ar> void serialize(Ar& ar)`");
   if constexpr (Resizable<T> && Bitwise<Each>) {
     put_numbers(std::span(container.data(), container.size()),

@@ -33,19 +33,23 @@ template <class Member>
 struct ClassOf;
 template <class F, class C>
 struct ClassOf<F C::*> : std::type_identity<C> {};
-/// True if T declares serialize() itself, or adds no members to the base class that does. A base
-/// class without members is taken to know those of T: it may have T as a parameter. `Beside` is
-/// a base class of T that is serialised elsewhere. A member in the padding of a base class is not
-/// noticed.
+/// True for a template with T among its parameters: as a base class it may know the members of T.
+template <class By, class T>
+inline constexpr bool knows = false;
+template <template <class...> class B, class... A, class T>
+inline constexpr bool knows<B<A...>, T> = (std::is_same_v<A, T> || ...);
+/// True if T declares serialize() itself, or adds no members to the base class that does, or if that
+/// class knows T. `Beside` is a base class of T that is serialised elsewhere. A member in the padding
+/// of a base class is not noticed.
 template <class T, class Beside = void>
 consteval bool serialises_all() {
   if constexpr (requires { &T::template serialize<Writer>; }) {
     using By = typename ClassOf<decltype(&T::template serialize<Writer>)>::type;
     if constexpr (std::is_void_v<Beside> || std::is_base_of_v<Beside, By>) {
-      return sizeof(T) == sizeof(By) || std::is_empty_v<By>;
+      return sizeof(T) == sizeof(By) || knows<By, T>;
     } else {
       struct Both : Beside, By {};
-      return sizeof(T) <= sizeof(Both) || std::is_empty_v<By>;
+      return sizeof(T) <= sizeof(Both) || knows<By, T>;
     }
   } else {
     return true;
@@ -78,6 +82,15 @@ concept Resizable = requires(T& c, std::size_t n) {
   c.size();
   typename T::value_type;
 };
+/// True for an aggregate with members beside the container that it is.
+template <class T>
+consteval bool holds_more() {
+  if constexpr (std::is_aggregate_v<T>) {
+    return detail::n_fields<T>() > 1;
+  } else {
+    return false;
+  }
+}
 template <class T>
 concept Growable = requires(T& c, typename T::value_type v) {
   c.clear();

@@ -10,8 +10,8 @@
 //                            tess::EntryMethod<&Cell::refine, tess::Priority{5}, tess::create_home>>;
 //     };
 //
-// EntryAttributes is public. Attributes hold for every message to the entry method, a priority also for its broadcasts, and
-// inline_when_local for send() only.
+// EntryAttributes is public. Attributes hold for every message to the entry method, a priority also
+// for its broadcasts, and inline_when_local for send() only.
 #pragma once
 
 #include "runtime/messages/class_options.hpp"

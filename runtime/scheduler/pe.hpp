@@ -146,7 +146,8 @@ class Pe {
       enqueue(message);
     }
   }
-  /// Runs a message on this PE before all others, and before what an adversary does meanwhile.
+  /// Runs a message on this PE before all others but expedited ones that wait already, and before
+  /// what an adversary does meanwhile.
   void run_next(Envelope* message) {
     completion_.hop_sent();
     message->target = id_;
@@ -237,11 +238,11 @@ class Pe {
   [[nodiscard]] PeId forced_migration(const AfterMessage& after);
   void set_forced_migrations(double chance, ElementMover* mover);
 
-  /// The futures that were made on this PE, by number. A result for a destroyed future is an error.
+  /// The futures that are in use on this PE, by number. A result for another one is an error.
   std::uint64_t enter_future(void* future);
   void move_future(std::uint64_t id, void* future);
   void leave_future(std::uint64_t id);
-  /// Null if the future was destroyed.
+  /// Null if the future is no longer in use.
   [[nodiscard]] void* find_future(std::uint64_t id) const;
   /// For restarts: numbers of futures made from now on begin behind those of the saved run, so that
   /// a callback that was saved finds none of them.
@@ -294,7 +295,7 @@ class Pe {
     return context_->element != nullptr && n_nested_ < most_nested &&
            constructed_index_ == nullptr && !stopped_;
   }
-  /// True inside a call of an entry method that another has made.
+  /// True inside a call of an entry method that another has made, or of code that must not call any.
   [[nodiscard]] bool nests() const { return n_nested_ != 0; }
   static constexpr unsigned most_nested = 16;
   /// Marks a call of an entry method inside another, or, with most_nested, code that must not call

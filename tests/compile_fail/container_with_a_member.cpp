@@ -1,4 +1,4 @@
-// expect: an aggregate that is also a container may have members of its own
+// expect: an aggregate that is also a container has members of its own
 #include "runtime/runtime.hpp"
 
 struct Named : std::vector<double> {

@@ -1,4 +1,4 @@
-// expect: serialize() is inherited from a base class and leaves out the members of this class
+// expect: serialize() is inherited from a base class and may leave out members of this class
 #include "runtime/runtime.hpp"
 
 class Model {

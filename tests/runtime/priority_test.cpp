@@ -75,11 +75,6 @@ class Actor : public tess::Chare<Actor> {
     self().send<&Actor::look_for_other>();
   }
   void look_for_other() { said.push_back(array().local({1}) == nullptr ? "gone" : "still here"); }
-  void end_next() {
-    said.push_back("met by " + std::to_string(index().x));
-    if (index().x + 1 < array().size()) array()[{index().x + 1}].send<&Actor::end_at_once>();
-  }
-  void end_next_by_broadcast() { array().broadcast<&Actor::end_next>(); }
 
   template <class Ar>
   void serialize(Ar& /*ar*/) {}
@@ -160,12 +155,6 @@ TEST_CASE("an element that ends or moves inside a send() stays until the sender'
   CHECK(said == std::vector<std::string>{"still here", "gone"});
   REQUIRE(act<&Actor::keep_local<&Actor::go_at_once>>(4, 2) == 0);
   CHECK(said == std::vector<std::string>{"still here", "gone"});
-}
-
-TEST_CASE("an element that ends inside a send() is not called by the broadcast that runs",
-          "[runtime][priority]") {
-  REQUIRE(act<&Actor::end_next_by_broadcast>(2) == 0);
-  CHECK(said == std::vector<std::string>{"met by 0"});
 }
 
 TEST_CASE("an entry method that creates on demand needs no other call", "[runtime][priority]") {

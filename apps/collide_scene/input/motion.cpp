@@ -15,7 +15,8 @@ namespace {
 using tess::collide::Aabb;
 using tess::collide::Point;
 
-/// The median of the longest extents; 1 if all objects are points.
+/// The median of the longest extents (of an even number the upper one of the two in the middle: a
+/// scene's numbers rest on it); 1 if all objects are points.
 double median_size(const Scene& scene) {
   std::vector<double> sizes;
   sizes.reserve(scene.n_objects());

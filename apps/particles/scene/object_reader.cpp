@@ -47,6 +47,7 @@ std::uint64_t read_field(const Node& node, const std::string& folder, SceneObjec
     const Field field = load_field(object.field);
     object.grid = field.grid, object.thickness = field.thickness;
     object.method = field.method, object.sides = field.sides;
+    object.field_has_normals = field.content() == Content::distance_and_normal;
     return field.surface;
   } catch (const tess::Error& error) {
     node.blame(error.what());

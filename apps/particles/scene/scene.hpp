@@ -25,8 +25,9 @@ struct SceneObject {
   double thickness = 0;  ///< of the field beyond the surface, in the object's units
   tess::dn::Method method = tess::dn::Method::exact;
   tess::dn::Sides sides = tess::dn::Sides::one;
-  tess::dn::Blur blur;    ///< of the methods that blur; no rounds: chosen from the thickness
-  std::string field;      ///< file that the field is read from; empty: it is built
+  tess::dn::Blur blur;  ///< of the methods that blur; no rounds: chosen from the thickness
+  std::string field;    ///< file that the field is read from; empty: it is built
+  bool field_has_normals = true;
   tess::dn::Frame frame;  ///< at the first step, with its velocities
   /// The share of the surface at which particles may pass the field: walls and edges thinner than
   /// least_wall(). 0 for fields of two sides, and where no rule stops particles.
@@ -107,6 +108,9 @@ struct Scene {
 /// Checks that rules, masses, motions, steps and fields fit one another. Readers do it; to be
 /// repeated after a change of a scene. Throws tess::Error.
 void check_scene(const Scene& scene);
+
+/// Throws Error (bad_file) for a field from a file without normals.
+void require_normals(const SceneObject& object);
 
 /// Whether rules, a picture or outputs need the fields.
 [[nodiscard]] bool builds_fields(const Scene& scene);

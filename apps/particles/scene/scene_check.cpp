@@ -94,6 +94,12 @@ void check_object(const Scene& scene, std::size_t number) {
 
 }  // namespace
 
+void require_normals(const SceneObject& object) {
+  if (!object.field_has_normals)
+    tess::fail(tess::ErrorCode::bad_file, object.field,
+               ": stores no normals, which are needed here; build it with distance and normal");
+}
+
 void check_scene(const Scene& scene) {
   for (const double mass : masses_of(scene)) {
     try {

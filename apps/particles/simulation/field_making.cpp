@@ -67,11 +67,8 @@ void FieldInTheMaking::finish(const std::optional<Compression>& compression) {
 Field build_alone(const SceneObject& object, Content content) {
   if (object.field.empty())
     return build_field(object.surface, object.grid, options_of(object, content));
-  Field field = loaded(object, content);
-  if (field.content() != content)
-    tess::fail(tess::ErrorCode::bad_file, object.field,
-               ": stores no normals, which are needed here; build it with distance and normal");
-  return field;
+  if (content == Content::distance_and_normal) require_normals(object);
+  return loaded(object, content);
 }
 
 ErrorBound bound_of(const Compression& compression, const Field& field) {

@@ -46,8 +46,7 @@ class FieldInTheMaking {
   double seconds_ = 0;
 };
 
-/// The flat field, built by this thread or read from its file. Throws Error(bad_file) for a file
-/// without the normals that `content` asks for.
+/// The flat field, built by this thread or read from its file, which has what `content` asks for.
 [[nodiscard]] tess::dn::Field build_alone(const SceneObject& object, tess::dn::Content content);
 
 [[nodiscard]] tess::dn::ErrorBound bound_of(const Compression& compression,

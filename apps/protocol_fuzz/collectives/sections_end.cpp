@@ -1,8 +1,8 @@
 // Sections that end in mid-use, on any PE and twice at once: with multicasts and contributions
-// under way, before their elements have joined, or with an index that never has one. The oracle: what is delivered until then is
-// right (each member receives each multicast at most once and in one order, a result has all
-// members), the epoch in which a section ends returns, and later sections of the same elements lack
-// nothing.
+// under way, before their elements have joined, or with an index that never has one. The oracle:
+// what is delivered until then is right (each member receives each multicast at most once and in
+// one order, a result has all members), the epoch in which a section ends returns, and later
+// sections of the same elements lack nothing.
 #include "apps/protocol_fuzz/scenarios.hpp"
 
 #include <map>

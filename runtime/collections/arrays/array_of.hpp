@@ -186,11 +186,12 @@ class ArrayOf : public Collection {
 
   void settle(Element& element) override {
     if (element.n_suspended_ != 0) return;
+    if (!element.destroy_requested_ && element.migrate_to_.value < 0) return;
     if (pe_.nests()) return settle_later(element);  // the caller may have it as an object (local())
     const Pe::Nested none(pe_, Pe::most_nested);    // its destructor may send messages
     if (element.destroy_requested_) {
       destroy_here(static_cast<Indexed&>(element));
-    } else if (element.migrate_to_.value >= 0) {
+    } else {
       const PeId to = element.migrate_to_;
       element.migrate_to_ = PeId{-1};
       if (to != pe_.id()) depart(static_cast<Indexed&>(element), to);
@@ -337,10 +338,13 @@ class ArrayOf : public Collection {
   void ship(Indexed& element, PeId to, Memberships&& memberships);
   void destroy_here(Indexed& element);
   void dead_letter(CallMessage* message);
+  [[nodiscard]] static bool may_be_unwanted(const CallMessage& message) {
+    return static_cast<const ElementAction<Index>&>(*message.action).unwanted != nullptr;
+  }
   /// True if the message need not wait for its element (ElementAction::Unwanted).
   [[nodiscard]] bool unwanted(const CallMessage& message) {
-    const auto is = static_cast<const ElementAction<Index>&>(*message.action).unwanted;
-    return is != nullptr && is(*this, message);
+    return may_be_unwanted(message) &&
+           static_cast<const ElementAction<Index>&>(*message.action).unwanted(*this, message);
   }
   void end_element(Indexed& element);
   void reroute(std::vector<CallMessage*>&& messages) {
@@ -363,6 +367,7 @@ class ArrayOf : public Collection {
   bool makes_initial_ = false;
   IndexTable<Index, Indexed> table_;
   std::uint32_t n_departures_ = 0;          // elements that left or were destroyed
+  std::size_t n_purposeful_ = 0;            // parked messages that may become unwanted, or more
   std::size_t n_hints_ = 0;                 // hints learnt since they were last forgotten
   Messages pending_, waiting_, destroyed_;  // parked messages by reason (Parked)
   ByIndex<std::uint32_t> n_destroyed_;      // destructions that the home has not confirmed

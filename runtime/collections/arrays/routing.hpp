@@ -66,6 +66,7 @@ void ArrayOf<Index>::forward(CallMessage* message, const Place& place) {
 template <class Index>
 void ArrayOf<Index>::park(CallMessage* message, Parked why) {
   table_.at(message->index).park(why);
+  if (may_be_unwanted(*message)) ++n_purposeful_;
   parked(why)[message->index].push_back(message);
 }
 
@@ -194,11 +195,15 @@ void ArrayOf<Index>::dead_letter(CallMessage* message) {
 
 template <class Index>
 void ArrayOf<Index>::drop_unwanted() {
+  if (n_purposeful_ == 0) return;
+  n_purposeful_ = 0;
   std::vector<Index> indices;
-  for (const auto& [index, messages] : waiting_)
+  for (const auto& [index, messages] : waiting_) {
+    for (const auto* one : messages) n_purposeful_ += may_be_unwanted(*one) ? 1 : 0;
     if (std::any_of(messages.begin(), messages.end(),
                     [this](const auto* one) { return unwanted(*one); }))
       indices.push_back(index);
+  }
   // The others are parked again.
   for (const Index& index : indices) {
     reroute(unpark(index, Parked::waiting));

@@ -71,7 +71,7 @@ concept ChoosesHomesWrongly =
                               { chare.place(index, n_pes) } -> std::same_as<PeId>;
                             } ||
                             requires(const typename C::Index& index, std::int32_t n_pes) {
-                              { C::place(index, n_pes) } -> std::integral;
+                              { C::place(index, n_pes) } -> std::same_as<std::int32_t>;
                             });
 
 /// A class that says what happens to messages to its destroyed elements.
@@ -170,7 +170,7 @@ class Array final : public ArrayOf<typename C::Index> {
   static void pack_element(Element& element, Writer& ar) {
     if constexpr (Migratable<C>) {
       static_assert(serialization::serialises_all<C, Indexed>(),
-                    "serialize() is inherited from a base class and leaves out the members of this "
+                    "serialize() is inherited from a base class and may leave out members of this "
                     "class: define it here, and call that of the base class in it");
       C& chare = static_cast<C&>(element);
       ar(own(chare).index_, own(chare).state_);

@@ -1,6 +1,6 @@
 // The futures that are in use on a PE, by number: where a result from another PE finds the future it
-// belongs to. A future that moves, has given its result or is destroyed says so, and a number is not
-// used again, so that a late result finds nothing. One thread.
+// belongs to. A future that moves, has its result or is destroyed says so, and a number is not used
+// again, so that a late result finds nothing. One thread.
 //
 //     number = place | how often the place had been used before << 32
 //
@@ -20,7 +20,7 @@ class FutureTable {
   std::uint64_t enter(void* future);
   void move(std::uint64_t id, void* future);
   void leave(std::uint64_t id);
-  /// Null if the future was destroyed.
+  /// Null if the future is no longer in use.
   [[nodiscard]] void* find(std::uint64_t id);
   /// Ends the job with a sentence that says why the future is not there.
   [[nodiscard]] void* require(std::uint64_t id);

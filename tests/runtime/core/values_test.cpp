@@ -53,6 +53,8 @@ struct Listed {
   std::map<std::string, std::vector<int>> map{{"x", {1, 2}}};
   friend bool operator==(const Listed&, const Listed&) = default;
 };
+/// A container by another name: an aggregate with nothing beside it.
+struct Path : std::vector<Plain> {};
 /// Writes nothing.
 struct Bare {
   int cache = 0;
@@ -168,6 +170,7 @@ TEST_CASE("values come back from their bytes, and truncated bytes are refused", 
   check_round_trip(Symmetric(7));
   check_round_trip(std::vector<Symmetric>{Symmetric(1), Symmetric(2)});
   check_round_trip(std::vector<bool>{true, false, true});
+  check_round_trip(Path{{{1, 2}, {3, 4}}});
   check_round_trip(std::deque<std::string>{"a", "", "ccc"});
   check_round_trip(std::set<int>{3, 1, 2});
   check_round_trip(std::unordered_map<int, std::string>{{1, "one"}});
