@@ -33,11 +33,21 @@ template <class Member>
 struct ClassOf;
 template <class F, class C>
 struct ClassOf<F C::*> : std::type_identity<C> {};
-/// True for a template with T among its parameters: as a base class it may know the members of T.
+/// True if T is A, or adds no members to its base class A.
+template <class A, class T>
+consteval bool holds_all_of() {
+  if constexpr (std::is_base_of_v<A, T>) {
+    return sizeof(A) == sizeof(T);
+  } else {
+    return false;
+  }
+}
+/// True for a template with such a class among its parameters: as a base class it may know all
+/// members of T.
 template <class By, class T>
 inline constexpr bool knows = false;
 template <template <class...> class B, class... A, class T>
-inline constexpr bool knows<B<A...>, T> = (std::is_same_v<A, T> || ...);
+inline constexpr bool knows<B<A...>, T> = (holds_all_of<A, T>() || ...);
 /// True if T declares serialize() itself, or adds no members to the base class that does, or if that
 /// class knows T. `Beside` is a base class of T that is serialised elsewhere. A member in the padding
 /// of a base class is not noticed.
