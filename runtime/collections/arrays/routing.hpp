@@ -199,7 +199,8 @@ void ArrayOf<Index>::drop_unwanted() {
   n_purposeful_ = 0;
   std::vector<Index> indices;
   for (const auto& [index, messages] : waiting_) {
-    for (const auto* one : messages) n_purposeful_ += may_be_unwanted(*one) ? 1 : 0;
+    for (const auto* one : messages)
+      if (may_be_unwanted(*one)) ++n_purposeful_;
     if (std::any_of(messages.begin(), messages.end(),
                     [this](const auto* one) { return unwanted(*one); }))
       indices.push_back(index);
