@@ -136,7 +136,7 @@ class [[nodiscard]] Task : public detail::AnyTask {
 ///
 ///     tess::TaskOf<double> mean_level(tess::ArrayProxy<Lake> lakes) {
 ///       const double of_all = co_await lakes.reduce<&Lake::level>();
-///       co_return of_all / lakes.size();
+///       co_return of_all / static_cast<double>(lakes.size());
 ///     }
 ///       // …
 ///       const double mean = co_await mean_level(lakes);

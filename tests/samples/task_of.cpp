@@ -13,7 +13,7 @@ class Lake : public tess::Chare<Lake> {
 
 tess::TaskOf<double> mean_level(tess::ArrayProxy<Lake> lakes) {
   const double of_all = co_await lakes.reduce<&Lake::level>();
-  co_return of_all / lakes.size();
+  co_return of_all / static_cast<double>(lakes.size());
 }
 
 tess::Task measure(double& found) {

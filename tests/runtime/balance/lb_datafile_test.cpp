@@ -91,7 +91,7 @@ TEST_CASE("phases come back from a file as they were", "[balance][lb_datafile]")
 // An id has 16 bits for the home.
 TEST_CASE("elements on very many PEs have ids of their own", "[balance][lb_datafile]") {
   Snapshot s = idle_pes(70000);
-  for (const std::size_t pe : {0, 65536, 0}) add_element(s, pe, 1);
+  for (const std::size_t pe : {0U, 65536U, 0U}) add_element(s, pe, 1);
   for (const double load : {1., 0.}) {
     s.elements.load[2] = load;
     require_same(parse_lb_datafiles({{"f", write_lb_datafile({{0, s}})}}).at(0).snapshot, s);
