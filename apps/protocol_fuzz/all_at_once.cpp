@@ -162,10 +162,10 @@ class Folder {
 void run(Trial& trial, const std::function<Task()>& main) {
   const Ending ending = trial.run(main);
   trial.expect(ending.exit_code == 0, "exit code ", ending.exit_code, "; ", ending.report);
-  trial.expect(ending.report.empty() ||
-                   (city->n_cut > 0 && ending.report.ends_with("not delivered\n") &&
-                    std::count(ending.report.begin(), ending.report.end(), '\n') == 1),
-               "report: ", ending.report);
+  trial.expect(
+      ending.report.empty() || (city->n_cut > 0 && ending.report.ends_with("not delivered\n") &&
+                                std::count(ending.report.begin(), ending.report.end(), '\n') == 1),
+      "report: ", ending.report);
 }
 
 }  // namespace tess::fuzz::city_life
