@@ -75,9 +75,9 @@ everywhere future_awaited_twice "a future of .*string.* is awaited again: the fi
 here task_awaited_at_once "two coroutines await one task"
 here value_awaited_twice "a task is awaited again: the first co_await took its result"
 everywhere ask_awaited_twice "the reply of Block\[1\].news is awaited again: the first co_await took it"
-here future_given_two "a future of int was given two results: it takes one"
+here future_given_two "a result came for a future that has its result already or was destroyed: give it one"
 # Between processes the element is made anew, with a future of its own.
-says threads future_after_move "a future of PE 0 is used on PE 1: its element has migrated before its result was taken" "Hasty\\[0\\]"
+says threads future_after_move "a future of PE 0 is used on PE 1: its element has migrated before its result was there" "Hasty\\[0\\]"
 # Within a process the pointer is passed on as it is.
 says processes derived_in_a_pointer "a unique_ptr to Shape holds a Circle, of which only the base class would be sent"
 here negative_argument "an argument is -1, but the entry method takes 0 to 18446744073709551615"

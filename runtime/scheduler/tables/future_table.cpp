@@ -55,9 +55,10 @@ void* FutureTable::require(std::uint64_t id) {
   TESS_CHECK(future != nullptr || static_cast<std::uint32_t>(id) >= first_,
              "a callback to a future of the run before the restart was called: make the future "
              "again after the restart, and send its new callback()");
-  TESS_CHECK(future != nullptr,
-             "the result of a future arrived after its coroutine had continued or ended: keep the "
-             "future until its result is there, and give it one result");
+  TESS_CHECK(
+      future != nullptr,
+      "a result came for a future that has its result already or was destroyed: give it one, "
+      "and keep the future until that is there");
   return future;
 }
 
