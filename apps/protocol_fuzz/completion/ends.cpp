@@ -104,7 +104,7 @@ void deadlocks(Trial& trial) {
     }
     case 2: {
       const Ending ending = trial.run([&] { patients().broadcast<&Patient::give>(1); });
-      expect_end(trial, ending, 1, {"deadlock", "reduction 0", "contributions", "Patient[0]"});
+      expect_end(trial, ending, 1, {"deadlock", "reduction 0", "contribution", "Patient[0]"});
       break;
     }
     case 3: {
