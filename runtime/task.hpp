@@ -42,7 +42,7 @@ class TaskPromise;
 struct TaskHandle : std::coroutine_handle<TaskPromise> {
   TaskHandle() = default;
   template <std::derived_from<TaskPromise> Promise>
-  TaskHandle(std::coroutine_handle<Promise> task)
+  TaskHandle(std::coroutine_handle<Promise> task)  // NOLINT(google-explicit-constructor)
       : std::coroutine_handle<TaskPromise>(
             std::coroutine_handle<TaskPromise>::from_address(task.address())) {
     // A frame has its promise behind two pointers, rounded up to the alignment of the promise.

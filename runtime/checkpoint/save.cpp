@@ -215,6 +215,7 @@ std::string remove_here(Pe& /*pe*/, const RemoveQuestion& question) {
 /// They look at a folder, each for its process.
 std::vector<PeId> first_of_processes(Pe& pe) {
   std::vector<PeId> pes;
+  pes.reserve(static_cast<std::size_t>(pe.machine().n_processes()));
   for (std::int32_t process = 0; process < pe.machine().n_processes(); ++process)
     pes.push_back(pe.machine().first_pe(ProcessId{process}));
   return pes;
