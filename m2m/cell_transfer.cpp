@@ -105,9 +105,7 @@ TaskOf<CellOutcome> transfer_cells(const TetMesh& source, const std::vector<Fiel
     if (options.on_phase) options.on_phase("apply");
     co_await coupling.apply<&CellWorker::values, &CellWorker::result>();
   }
-  Future<Outcome> gathered;
-  to.broadcast<&CellWorker::gather>(coupling.id(), gathered.callback());
-  const Outcome all = co_await gathered;
+  const Outcome all = co_await to.reduce<&CellWorker::gather>(coupling.id());
   outcome.status.resize(target.n_tets());
   const double* row = all.values.data();
   for (std::size_t i = 0; i < all.points.size(); ++i) {

@@ -183,17 +183,6 @@ void AnyCoupling::destroy() {
   setup = {};
 }
 
-namespace {
-
-/// Gives what the pieces have added to the ledger since the last call.
-TaskOf<LedgerPage> close_page(GroupProxy<Ledger> ledger) {
-  Future<LedgerPage> closed;
-  ledger.broadcast<&Ledger::close_page>(closed.callback());
-  co_return co_await closed;
-}
-
-}  // namespace
-
 TaskOf<SearchSummary> AnyCoupling::search() {
   State& state = *state_;
   TESS_CHECK(state.under_way.n_searches == 0 && state.under_way.n_applications == 0,
@@ -209,7 +198,7 @@ TaskOf<SearchSummary> AnyCoupling::search() {
   LedgerPage found;
   if (state.is_conservative()) {
     co_await find_overlaps();
-    found = co_await close_page(state.setup.ledger);
+    found = co_await state.setup.ledger.reduce<&Ledger::close_page>();
   } else {
     found = co_await find_donors();
   }
@@ -250,17 +239,17 @@ Task AnyCoupling::collide_covers() {
 TaskOf<LedgerPage> AnyCoupling::find_donors() {
   const CouplingSetup& setup = state_->setup;
   co_await epoch([&] { setup.target.broadcast<&AnyPiece::m2m_ask>(setup.id); });
-  LedgerPage found = co_await close_page(setup.ledger);
+  LedgerPage found = co_await setup.ledger.reduce<&Ledger::close_page>();
   if (found.n_waiting == 0 && found.n_alone == 0) co_return found;
   co_await epoch([&] { setup.source.broadcast<&AnyPiece::m2m_name_source>(setup.id); });
-  LedgerPage page = co_await close_page(setup.ledger);
+  LedgerPage page = co_await setup.ledger.reduce<&Ledger::close_page>();
   std::sort(page.sources.begin(), page.sources.end(),
             [](const SourcePiece& a, const SourcePiece& b) { return a.owner < b.owner; });
   if (!page.sources.empty()) found.least_source = page.sources.front().owner;
   if (found.n_waiting == 0) co_return found;
   co_await epoch(
       [&] { setup.target.broadcast<&AnyPiece::m2m_ask_nearest>(setup.id, page.sources); });
-  page = co_await close_page(setup.ledger);
+  page = co_await setup.ledger.reduce<&Ledger::close_page>();
   found += page;
   co_return found;
 }

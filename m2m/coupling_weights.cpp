@@ -67,9 +67,7 @@ TaskOf<WeightMatrix> collect_weights(const AnyCoupling& coupling, std::int64_t n
   GroupProxy<RowBook> book;
   co_await epoch([&] { book = create_group<RowBook>(); });
   co_await epoch([&] { setup.source.broadcast<&AnyPiece::m2m_give_rows>(setup.id, book); });
-  Future<GlobalRows> page;
-  book.broadcast<&RowBook::close_page>(page.callback());
-  const GlobalRows rows = co_await page;
+  const GlobalRows rows = co_await book.reduce<&RowBook::close_page>();
   co_await epoch([&] { book.destroy(); });
   co_return matrix_of(rows, n_sources, n_targets);
 }

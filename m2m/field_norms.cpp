@@ -67,9 +67,7 @@ TaskOf<std::vector<FieldNorms>> measure_norms(DistributedMesh mesh, NormsRequest
          request.truth.size(), " formulas are given; give one per component");
   for (const FormulaField& field : request.truth) (void)make_formula(field.name, field.domain);
   co_await epoch([&] { mesh.workers.broadcast<&Worker::share_status>(); });
-  Future<NormSums> reduced;
-  mesh.workers.broadcast<&Worker::measure>(request, reduced.callback());
-  const NormSums sums = co_await reduced;
+  const NormSums sums = co_await mesh.workers.reduce<&Worker::measure>(request);
   if (const NotFinite& bad = sums.refused; bad.component >= 0)
     throw Error(ErrorCode::bad_value,
                 not_finite_text(request.truth[static_cast<std::size_t>(bad.component)].name,

@@ -57,9 +57,7 @@ TaskOf<ReadMesh> read_and_measure(GroupProxy<Placer> placers, PlacerSetup setup)
     std::rethrow_exception(refused);
   }
 
-  Future<Measured> measured;
-  placers.broadcast<&Placer::measure>(mesh.census.bounds, measured.callback());
-  mesh.measured = co_await measured;
+  mesh.measured = co_await placers.reduce<&Placer::measure>(mesh.census.bounds);
   const Measured& all = mesh.measured;
   all.report.findings.refuse_bad_shapes(setup.shown_name, static_cast<std::uint64_t>(setup.n_tets));
   mesh.census.n_flat = all.report.findings.n_flat;
@@ -74,9 +72,7 @@ TaskOf<MeshCensus> lead(GroupProxy<Placer> placers, PlacerSetup setup) {
   CurveCut cut(static_cast<std::uint64_t>(setup.n_tets), setup.n_parts);
   if (!cut.is_done()) cut.refine(mesh.measured.counts);
   while (!cut.is_done()) {
-    Future<CellCounts> counts;
-    placers.broadcast<&Placer::count>(cut, counts.callback());
-    const CellCounts sum = co_await counts;
+    const CellCounts sum = co_await placers.reduce<&Placer::count>(cut);
     cut.refine(sum);
   }
 
@@ -122,9 +118,7 @@ TaskOf<MeshSurvey> survey_ranges(PlacerSetup setup, const TetMesh* whole) {
     co_await send_ranges(placers, whole);
     ReadMesh mesh = co_await read_and_measure(placers, setup);
     co_await when_all(std::move(mesh.corners));
-    Future<SurveyReport> counted;
-    placers.broadcast<&Placer::count_extent>(counted.callback());
-    const SurveyReport report = co_await counted;
+    const SurveyReport report = co_await placers.reduce<&Placer::count_extent>();
     throw_first(report.error);
     out.census = mesh.census;
     out.census.n_unused = report.n_unused;
