@@ -56,7 +56,7 @@ std::int64_t ReductionBegin::priority() const {
   return expedites ? expedited.value : 0;
 }
 std::uint64_t ReductionReport::drop(Pe& pe) const {
-  settle(pe.completion(), shares);
+  settle(pe.completion(), sum.shares);
   return 0;
 }
 
@@ -81,7 +81,7 @@ void BroadcastHostOfCollection::apply(const NumberedCall& call) {
 
 void ReductionHostOfCollection::send(PeId to, ReductionReport&& report) {
   report.expedites = expedites_;
-  if (report.value.held) report.value.held->leave();
+  if (report.sum.value.held) report.sum.value.held->leave();
   if (track_ == Track::own) {
     send_to_collection<&report_arrives<Track::own>>(collection_, to, std::move(report));
   } else {

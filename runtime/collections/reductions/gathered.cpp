@@ -1,6 +1,7 @@
 #include "runtime/collections/reductions/gathered.hpp"
 
 #include "runtime/completion/completion.hpp"
+#include "runtime/core/algorithm.hpp"
 #include "runtime/core/check.hpp"
 #include "runtime/core/type_name.hpp"
 
@@ -26,23 +27,27 @@ void Gathered::merge_value(std::unique_ptr<Partial> more) {
   value.held->merge(std::move(*more));
 }
 
-void Gathered::merge_shares(const std::vector<EpochShare>& more) {
-  for (const EpochShare& share : more) {
-    bool found = false;
-    for (EpochShare& mine : shares) {
-      if (mine.epoch != share.epoch) continue;
-      mine.n += share.n;
-      found = true;
-      break;
-    }
-    if (!found) shares.push_back(share);
+void Gathered::merge_share(const EpochShare& more) {
+  const auto mine = std::find_if(shares.begin(), shares.end(), [&more](const EpochShare& share) {
+    return share.epoch == more.epoch;
+  });
+  if (mine == shares.end()) {
+    shares.push_back(more);
+  } else {
+    mine->n += more.n;
   }
+}
+
+void Gathered::add(EpochId epoch, std::unique_ptr<Partial> more) {
+  ++n;
+  merge_value(std::move(more));
+  merge_share({epoch, 1});
 }
 
 void Gathered::merge(Gathered&& more) {
   n += more.n;
   merge_value(std::move(more.value.held));
-  merge_shares(more.shares);
+  for (const EpochShare& share : more.shares) merge_share(share);
 }
 
 }  // namespace tess::detail

@@ -27,11 +27,10 @@ struct Gathered {
   std::vector<EpochShare> shares;
   const PartialKind* kind = nullptr;  ///< of the value, once something was merged here
 
-  /// Merges more contributions; a value of another kind is misuse.
+  /// Adds a contribution; a value of another kind is misuse.
+  void add(EpochId epoch, std::unique_ptr<Partial> more);
+  /// Merges more contributions.
   void merge(Gathered&& more);
-  /// The same, in parts.
-  void merge_value(std::unique_ptr<Partial> more);
-  void merge_shares(const std::vector<EpochShare>& more);
   /// True if a contribution of this kind and epoch can be added in place.
   [[nodiscard]] bool takes(const PartialKind& other, EpochId epoch) const {
     return value.held && kind == &other && shares.front().epoch == epoch;
@@ -45,6 +44,10 @@ struct Gathered {
   void serialize(Ar& ar) {
     ar(n, value, shares);
   }
+
+ private:
+  void merge_value(std::unique_ptr<Partial> more);
+  void merge_share(const EpochShare& more);
 };
 
 }  // namespace tess::detail

@@ -13,11 +13,8 @@ constexpr std::uint32_t most_rounds = ~std::uint32_t{0} - (1U << 20U);
 }  // namespace
 
 void ReductionTree::end() {
-  for (const auto& [number, gathering] : gathering_) settle(completion_, gathering.shares);
-  for (const auto& [number, whole] : whole_) settle(completion_, whole.sum.shares);
-  gathering_.clear();
-  whole_.clear();
-  current_ = nullptr;
+  gathering_.drop(completion_);
+  whole_.drop(completion_);
 }
 
 ReductionTree::ReductionTree(ReductionHost& host, Completion& completion, PeId here, PeId root,
@@ -36,17 +33,19 @@ void ReductionTree::ask_children(std::uint32_t number, const Cause& cause) {
   for (const PeId child : children_) host_.send(child, ReductionBegin{number, cause});
 }
 
-namespace {
-
-/// True if an earlier broadcast led to it than was known.
-bool merge(Cause& into, const Cause& cause) {
-  into.met = std::max(into.met, cause.met);
-  if (cause.led_by - 1 >= into.led_by - 1) return false;  // 0 means none and is ordered last
-  into.led_by = cause.led_by;
+bool Cause::merge(const Cause& more) {
+  met = std::max(met, more.met);
+  if (more.led_by - 1 >= led_by - 1) return false;  // 0 means none and is ordered last
+  led_by = more.led_by;
   return true;
 }
 
-}  // namespace
+bool Reported::merge(Reported&& more) {
+  Gathered::merge(std::move(more));
+  change += more.change;
+  note(std::move(more.newcomer));
+  return cause.merge(more.cause);
+}
 
 bool ReductionTree::learn(std::uint32_t number, std::uint32_t led_by) {
   if (led_by == 0 || !led_to_.learn(led_by, number)) return false;
@@ -55,10 +54,13 @@ bool ReductionTree::learn(std::uint32_t number, std::uint32_t led_by) {
 }
 
 void ReductionTree::take(std::uint32_t number, Gathering& into, const Cause& cause) {
-  if (!merge(into.cause, cause)) return;
-  (void)learn(number, cause.led_by);
+  if (into.cause.merge(cause)) led_earlier(number, into);
+}
+
+void ReductionTree::led_earlier(std::uint32_t number, const Gathering& gathering) {
+  (void)learn(number, gathering.cause.led_by);
   // A PE below that was asked or has reported may hold an element that waits for this number.
-  if (into.asked || into.children > 0) ask_children(number, into.cause);
+  if (gathering.asked || gathering.children > 0) ask_children(number, gathering.cause);
 }
 
 void ReductionTree::take(std::uint32_t number, const Cause& cause) {
@@ -72,7 +74,7 @@ void ReductionTree::take(std::uint32_t number, const Cause& cause) {
 }
 
 std::uint32_t ReductionTree::admit() {
-  whole_[next_complete_].sum.change += 1;
+  whole_[next_complete_].change += 1;
   return next_complete_;
 }
 
@@ -87,7 +89,7 @@ void ReductionTree::remove_member(std::uint32_t next) {
 void ReductionTree::send_late_change(std::uint32_t number, std::uint32_t joins) {
   ReductionReport late;
   late.number = number;
-  late.change = -1;
+  late.sum.change = -1;
   late.late = true;
   late.joins = joins;
   host_.send(root_, std::move(late));
@@ -117,11 +119,9 @@ void ReductionTree::leave(std::uint32_t next) {
 }
 
 void ReductionTree::added(std::uint32_t number, const Cause& cause) {
-  Gathering& gathering = *current_;
-  take(number, gathering, cause);
+  Gathering& gathering = gathering_.added();
   completion_.sent(gathering.shares.front().epoch);
-  ++gathering.shares.front().n;
-  ++gathering.n;
+  take(number, gathering, cause);
   leave(number);
   enter(number + 1);
   if (ready(next_report_)) advance();
@@ -135,23 +135,16 @@ void ReductionTree::contribute(std::uint32_t number, EpochId epoch, std::unique_
   if (number < next_report_) {  // this PE has reported: the element arrived later
     ReductionReport late;
     late.number = number;
-    late.n = 1;
     late.late = true;
-    late.cause = cause;
-    late.newcomer = std::move(newcomer);
-    late.value.held = std::move(value);
-    late.shares = {{epoch, 1}};
+    late.sum.add(epoch, std::move(value));
+    late.sum.cause = cause;
+    late.sum.newcomer = std::move(newcomer);
     host_.send(root_, std::move(late));
     return;
   }
-  Gathering& gathering = gathering_[number];
+  Gathering& gathering = gathering_.add(number, epoch, std::move(value));
   gathering.known = true;
-  ++gathering.n;
-  gathering.merge_value(std::move(value));
-  gathering.merge_shares({{epoch, 1}});
   gathering.note(std::move(newcomer));
-  current_ = &gathering;
-  current_number_ = number;
   take(number, gathering, cause);
   advance();
 }
@@ -162,9 +155,9 @@ bool ReductionTree::ready(std::uint32_t number) const {
 
 void ReductionTree::advance() {
   for (;;) {
-    const auto at = gathering_.find(next_report_);
-    if (at == gathering_.end() || !at->second.known || !ready(next_report_)) return;
-    Gathering& gathering = at->second;
+    Gathering* const found = gathering_.find(next_report_);
+    if (found == nullptr || !found->known || !ready(next_report_)) return;
+    Gathering& gathering = *found;
     if (static_cast<std::size_t>(gathering.children) < children_.size()) {
       if (!gathering.asked) {
         gathering.asked = true;
@@ -177,9 +170,7 @@ void ReductionTree::advance() {
       awaited_broadcast_ = gathering.cause.met;
       return;
     }
-    if (current_ == &gathering) current_ = nullptr;
-    Gathering done = std::move(gathering);
-    gathering_.erase(at);
+    Gathering done = gathering_.take(next_report_);
     if (const auto change = changes_.find(next_report_); change != changes_.end()) {
       done.change += change->second;
       changes_.erase(change);
@@ -190,51 +181,34 @@ void ReductionTree::advance() {
 
 void ReductionTree::report(std::uint32_t number, Gathering&& gathered) {
   if (root_ != here_) {
-    host_.send(parent_, ReductionReport{number, gathered.n, gathered.change, false, 0,
-                                        gathered.cause, std::move(gathered.newcomer),
-                                        std::move(gathered.value), std::move(gathered.shares)});
+    host_.send(parent_, ReductionReport{number, std::move(gathered)});
     return;
   }
   Whole& whole = whole_[number];
   whole.all_reported = true;
-  merge(whole.sum.cause, gathered.cause);
-  whole.sum.note(std::move(gathered.newcomer));
-  whole.sum.n += gathered.n;
-  whole.sum.change += gathered.change;
-  whole.sum.merge_value(std::move(gathered.value.held));
-  whole.sum.merge_shares(gathered.shares);
+  whole.merge(std::move(gathered));
   complete_if_whole();
 }
 
 void ReductionTree::on_report(ReductionReport&& report) {
+  const Cause cause = report.sum.cause;
   if (report.late) {
     // A member of a number contributes to it or is destroyed before the number is complete.
     TESS_CHECK(report.number >= next_complete_, words_.name, " ", report.number,
                " is complete, but a report of one of its members arrives");
-    Whole& whole = whole_[report.number];
-    merge(whole.sum.cause, report.cause);
-    whole.sum.note(std::move(report.newcomer));
-    whole.sum.n += report.n;
-    whole.sum.change += report.change;
-    whole.sum.merge_value(std::move(report.value.held));
-    whole.sum.merge_shares(report.shares);
-    if (report.joins != 0) whole_[report.joins].sum.change += 1;
-    take(report.number, report.cause);
+    whole_[report.number].merge(std::move(report.sum));
+    if (report.joins != 0) whole_[report.joins].change += 1;
+    take(report.number, cause);
     advance();
     complete_if_whole();
     return;
   }
   Gathering& gathering = gathering_[report.number];
   gathering.known = true;
-  gathering.n += report.n;
-  gathering.change += report.change;
-  gathering.merge_value(std::move(report.value.held));
-  gathering.merge_shares(report.shares);
-  gathering.note(std::move(report.newcomer));
-  take(report.number, gathering, report.cause);
+  if (gathering.merge(std::move(report.sum))) led_earlier(report.number, gathering);
   ++gathering.children;
   // The same holds for a PE that reported without this knowledge.
-  if (report.cause.led_by != gathering.cause.led_by && !gathering.asked)
+  if (cause.led_by != gathering.cause.led_by && !gathering.asked)
     ask_children(report.number, gathering.cause);
   advance();
 }
@@ -244,7 +218,7 @@ void ReductionTree::on_begin(const ReductionBegin& begin) {
   advance();
 }
 
-void ReductionTree::check_newcomer(const Gathering& sum) const {
+void ReductionTree::check_newcomer(const Reported& sum) const {
   const Newcomer& newcomer = sum.newcomer;
   TESS_CHECK(newcomer.created_after == 0 || sum.cause.led_by - 1 >= newcomer.created_after,
              newcomer.element, " was created after broadcast ", newcomer.created_after,
@@ -256,14 +230,12 @@ void ReductionTree::check_newcomer(const Gathering& sum) const {
 
 void ReductionTree::complete_if_whole() {
   for (;;) {
-    const auto at = whole_.find(next_complete_);
-    if (at == whole_.end() || !at->second.all_reported) return;
-    Gathering& sum = at->second.sum;
-    if (static_cast<std::int64_t>(sum.n) != members_ + sum.change) return;
-    members_ += sum.change;
-    check_newcomer(sum);
-    Gathering done = std::move(sum);
-    whole_.erase(at);
+    const Whole* const whole = whole_.find(next_complete_);
+    if (whole == nullptr || !whole->all_reported) return;
+    if (static_cast<std::int64_t>(whole->n) != members_ + whole->change) return;
+    members_ += whole->change;
+    check_newcomer(*whole);
+    const Whole done = whole_.take(next_complete_);
     ++next_complete_;
     TESS_CHECK(next_complete_ < most_rounds, words_.name, " ", next_complete_,
                " is the last one of a collection: create another one");
@@ -287,10 +259,10 @@ void ReductionTree::describe_waiting(std::vector<std::string>& lines) const {
     lines.push_back(text(words_.name, " ", elements_at_.lowest(), " waits for ",
                          words_.missing_before(next_report_)));
   for (const auto& [number, whole] : whole_) {
-    if (whole.sum.n != 0)
-      lines.push_back(text(words_.name, " ", number, " has ", whole.sum.n,
-                           whole.sum.n == 1 ? " contribution of " : " contributions of ",
-                           members_ + whole.sum.change, " members"));
+    if (whole.n != 0)
+      lines.push_back(text(words_.name, " ", number, " has ", whole.n,
+                           whole.n == 1 ? " contribution of " : " contributions of ",
+                           members_ + whole.change, " members"));
   }
 }
 

@@ -38,6 +38,7 @@
 #include "runtime/collections/reductions/gathered.hpp"
 #include "runtime/collections/reductions/led_to.hpp"
 #include "runtime/collections/reductions/number_counts.hpp"
+#include "runtime/collections/reductions/open_sums.hpp"
 #include "runtime/core/ids.hpp"
 
 #include <cstdint>
@@ -57,6 +58,8 @@ class Pe;
 struct Cause {
   std::uint64_t met = 0;
   std::uint32_t led_by = 0;
+  /// Merges another. Returns true if an earlier broadcast led to it than was known.
+  bool merge(const Cause& more);
 };
 
 /// An element that contributes for the first time, and the last broadcast before its creation.
@@ -65,22 +68,34 @@ struct Newcomer {
   std::string element;
 };
 
+/// Contributions to a number, with what is reported beside them.
+struct Reported : Gathered {
+  std::int64_t change = 0;  // of the membership
+  Cause cause;
+  Newcomer newcomer;  // of these contributors the one that was created after the last broadcast
+  void note(Newcomer&& other) {
+    if (other.created_after > newcomer.created_after) newcomer = std::move(other);
+  }
+  /// Returns true if an earlier broadcast led to it than was known.
+  bool merge(Reported&& more);
+  template <class Ar>
+  void serialize(Ar& ar) {
+    Gathered::serialize(ar);
+    ar(change, cause, newcomer);
+  }
+};
+
 /// A PE's report to its parent, or a late contribution or change of membership to the root.
 struct ReductionReport {
   std::uint32_t number = 0;
-  std::uint64_t n = 0;
-  std::int64_t change = 0;
+  Reported sum;
   bool late = false;  // sent directly to the root
   // In a late report: the element that leaves the membership of `number` joins there; 0: none.
   std::uint32_t joins = 0;
-  Cause cause;
-  Newcomer newcomer;  // of those in this report the one that was created after the last broadcast
-  PartialBox value;
-  std::vector<EpochShare> shares;
   bool expedites = false;
   template <class Ar>
   void serialize(Ar& ar) {
-    ar(number, n, change, late, expedites, joins, cause, newcomer, value, shares);
+    ar(number, late, expedites, joins, sum);
   }
   [[nodiscard]] std::int64_t priority() const;
   std::uint64_t drop(Pe& pe) const;  // the collection has ended
@@ -157,9 +172,7 @@ class ReductionTree {
   /// The contributions to `number` gathered here, if one of this kind and epoch can be added in
   /// place; otherwise null, then call contribute(). After adding, the caller calls added().
   [[nodiscard]] Partial* open_sum(std::uint32_t number, const PartialKind& kind, EpochId epoch) {
-    if (current_ == nullptr || current_number_ != number || !current_->takes(kind, epoch))
-      return nullptr;
-    return current_->value.held.get();
+    return gathering_.open(number, kind, epoch);
   }
   /// A contribution was added to open_sum().
   void added(std::uint32_t number, const Cause& cause);
@@ -185,22 +198,16 @@ class ReductionTree {
   void describe_waiting(std::vector<std::string>& lines) const;
 
  private:
-  struct Gathering : Gathered {
-    std::int64_t change = 0;
+  struct Gathering : Reported {
     std::int32_t children = 0;
     bool known = false;  // an element contributed, or a PE reported or asked
     bool asked = false;  // the children were asked to begin
-    Cause cause;
-    Newcomer newcomer;
-    void note(Newcomer&& other) {
-      if (other.created_after > newcomer.created_after) newcomer = std::move(other);
-    }
   };
 
   [[nodiscard]] bool ready(std::uint32_t number) const;
   void report(std::uint32_t number, Gathering&& gathered);
   void complete_if_whole();
-  void check_newcomer(const Gathering& sum) const;
+  void check_newcomer(const Reported& sum) const;
 
   void send_late_change(std::uint32_t number, std::uint32_t joins);
   void ask_children(std::uint32_t number, const Cause& cause);
@@ -211,6 +218,8 @@ class ReductionTree {
   /// The same for a contribution elsewhere, of which this PE learns by a message that is no report
   /// of a child: a new element below may wait for this knowledge, so the children are asked.
   void take(std::uint32_t number, const Cause& cause);
+  /// An earlier broadcast led to `number` than was known.
+  void led_earlier(std::uint32_t number, const Gathering& gathering);
 
   ReductionHost& host_;
   Completion& completion_;
@@ -218,20 +227,17 @@ class ReductionTree {
   const PeId here_, root_, parent_;
   const std::vector<PeId> children_;
   std::uint32_t next_report_ = 0;  // this PE has reported all lower numbers
-  std::map<std::uint32_t, Gathering> gathering_;
+  OpenSums<Gathering> gathering_;
   std::map<std::uint32_t, std::int64_t> changes_;
   LedTo led_to_;
   std::uint64_t awaited_broadcast_ = 0;  // reports wait until this broadcast is applied
   NumberCounts elements_at_;             // counts of local elements by their next number
-  Gathering* current_ = nullptr;         // the entry of gathering_ that got the last contribution
-  std::uint32_t current_number_ = 0;
 
   // At the root: numbers in the order of completion.
-  struct Whole {
-    Gathering sum;
+  struct Whole : Reported {
     bool all_reported = false;
   };
-  std::map<std::uint32_t, Whole> whole_;
+  OpenSums<Whole> whole_;
   std::uint32_t next_complete_ = 0;
   std::int64_t members_ = 0;
 };

@@ -27,11 +27,11 @@ SectionReduction::Child* SectionReduction::child(PeId pe) {
 
 bool SectionReduction::ready(std::uint32_t number) const {
   if (!passed(number)) return false;
-  const auto at = gathering_.find(number);
+  const Gathering* const gathering = gathering_.find(number);
   return std::all_of(children_.begin(), children_.end(), [&](const Child& one) {
     if (!one.attached || one.as.from > number) return true;
-    if (at == gathering_.end()) return false;
-    const auto& reported = at->second.reported;
+    if (gathering == nullptr) return false;
+    const auto& reported = gathering->reported;
     return std::find(reported.begin(), reported.end(), std::pair(one.pe, one.as.time)) !=
            reported.end();
   });
@@ -56,9 +56,8 @@ void SectionReduction::send_up(std::uint32_t number, Gathered&& gathered) {
 
 void SectionReduction::flush(std::uint32_t end) {
   while (!gathering_.empty() && gathering_.begin()->first < end) {
-    auto node = gathering_.extract(gathering_.begin());
-    if (current_ == &node.mapped()) current_ = nullptr;
-    send_to_root(node.key(), std::move(node.mapped()));
+    const std::uint32_t number = gathering_.begin()->first;
+    send_to_root(number, gathering_.take(number));
   }
 }
 
@@ -83,13 +82,8 @@ void SectionReduction::advance() {
     if (here_ != root_) host_.send(parent_, SectionAttach{here_, as_, true});
   }
   while (ready(next_report_)) {
-    Gathered done;
-    if (const auto at = gathering_.find(next_report_); at != gathering_.end()) {
-      if (current_ == &at->second) current_ = nullptr;
-      done = std::move(at->second);
-      gathering_.erase(at);
-    }
-    send_up(next_report_++, std::move(done));
+    const std::uint32_t number = next_report_++;
+    send_up(number, gathering_.take(number));
   }
 }
 
@@ -100,18 +94,11 @@ void SectionReduction::contribute(std::uint32_t number, EpochId epoch,
   enter(number + 1);
   if (number < next_report_) {  // this PE has reported: the member arrived later
     Gathered one;
-    one.n = 1;
-    one.merge_value(std::move(value));
-    one.merge_shares({{epoch, 1}});
+    one.add(epoch, std::move(value));
     send_to_root(number, std::move(one));
     return;
   }
-  Gathering& gathering = gathering_[number];
-  ++gathering.n;
-  gathering.merge_value(std::move(value));
-  gathering.merge_shares({{epoch, 1}});
-  current_ = &gathering;
-  current_number_ = number;
+  gathering_.add(number, epoch, std::move(value));
   if (passed(next_report_)) advance();
 }
 
@@ -146,9 +133,7 @@ void SectionReduction::on_report(SectionReport&& report) {
 }
 
 void SectionReduction::end() {
-  for (const auto& [number, gathering] : gathering_) settle(completion_, gathering.shares);
-  gathering_.clear();
-  current_ = nullptr;
+  gathering_.drop(completion_);
 }
 
 std::uint64_t SectionReduction::n_waiting() const {
@@ -179,12 +164,11 @@ void SectionTotal::arrived(std::uint32_t number, Gathered&& gathered) {
 }
 
 bool SectionTotal::take(Gathered& whole) {
-  const auto at = whole_.find(next_complete_);
-  if (!begun_ || at == whole_.end() ||
-      static_cast<std::int64_t>(at->second.n) != members_of(next_complete_))
+  const Gathered* const next = whole_.find(next_complete_);
+  if (!begun_ || next == nullptr ||
+      static_cast<std::int64_t>(next->n) != members_of(next_complete_))
     return false;
-  whole = std::move(at->second);
-  whole_.erase(at);
+  whole = whole_.take(next_complete_);
   members_ = members_of(next_complete_);
   removed_.erase(removed_.begin(), removed_.upper_bound(next_complete_));
   ++next_complete_;
@@ -192,8 +176,7 @@ bool SectionTotal::take(Gathered& whole) {
 }
 
 void SectionTotal::end(Completion& completion) {
-  for (const auto& [number, whole] : whole_) settle(completion, whole.shares);
-  whole_.clear();
+  whole_.drop(completion);
 }
 
 bool SectionTotal::first_incomplete(Incomplete& found) const {

@@ -18,6 +18,7 @@
 
 #include "runtime/collections/reductions/gathered.hpp"
 #include "runtime/collections/reductions/number_counts.hpp"
+#include "runtime/collections/reductions/open_sums.hpp"
 #include "runtime/completion/completion.hpp"
 
 #include <cstdint>
@@ -81,14 +82,10 @@ class SectionReduction {
   /// The contributions to `number` gathered here, if one of this kind and epoch can be added in
   /// place; otherwise null, then call contribute(). After adding, the caller calls added().
   [[nodiscard]] Partial* open_sum(std::uint32_t number, const PartialKind& kind, EpochId epoch) {
-    if (current_ == nullptr || current_number_ != number || !current_->takes(kind, epoch))
-      return nullptr;
-    return current_->value.held.get();
+    return gathering_.open(number, kind, epoch);
   }
   void added(std::uint32_t number) {
-    completion_.sent(current_->shares.front().epoch);
-    ++current_->shares.front().n;
-    ++current_->n;
+    completion_.sent(gathering_.added().shares.front().epoch);
     leave(number);
     enter(number + 1);
     if (passed(next_report_)) advance();
@@ -133,9 +130,7 @@ class SectionReduction {
   bool attached_ = false;
   Attachment as_;
   std::uint32_t next_report_ = 0;  // while attached: all lower numbers are reported
-  std::map<std::uint32_t, Gathering> gathering_;
-  Gathering* current_ = nullptr;  // the entry of gathering_ that got the last contribution
-  std::uint32_t current_number_ = 0;
+  OpenSums<Gathering> gathering_;
 };
 
 /// The root's count of the contributions to a section.
@@ -170,7 +165,7 @@ class SectionTotal {
   std::int64_t members_ = 0;
   std::uint32_t next_complete_ = 0;
   std::map<std::uint32_t, std::int64_t> removed_;  // by their next number
-  std::map<std::uint32_t, Gathered> whole_;
+  OpenSums<Gathered> whole_;
 };
 
 }  // namespace tess::detail

@@ -267,7 +267,7 @@ void TreeHost::send(PeId to, ReductionReport&& report) {
   const auto held = std::make_shared<ReductionReport>(std::move(report));
   trees_.bag.post([&trees = trees_, to, held] {
     if (trees.ended) {
-      settle(trees.ledgers.at(to), held->shares);
+      settle(trees.ledgers.at(to), held->sum.shares);
     } else {
       trees.tree(to).on_report(std::move(*held));
     }

@@ -239,8 +239,8 @@ void PartHost::arrived(std::uint32_t number, Gathered&& gathered) {
 
 Gathered contributions(std::uint64_t n) {
   Gathered some;
+  some.add(EpochId{}, std::make_unique<Givers>(static_cast<int>(n)));
   some.n = n;
-  some.merge_value(std::make_unique<Givers>(static_cast<int>(n)));
   return some;
 }
 
