@@ -3,6 +3,7 @@
 // runtime/array.hpp.
 #pragma once
 
+#include "runtime/core/handle.hpp"
 #include "runtime/element_proxy.hpp"
 #include "runtime/future.hpp"
 
@@ -26,12 +27,10 @@ void broadcast_value(const Proxy& all, T&& value) {
 
 /// The proxy of a whole array.
 template <class C>
-class ArrayProxy {
+class ArrayProxy : public detail::WholeHandle<ArrayProxy<C>> {
  public:
-  ArrayProxy() = default;
-  explicit ArrayProxy(CollectionId id) : id_(id) {}
+  using detail::WholeHandle<ArrayProxy>::WholeHandle;
 
-  [[nodiscard]] CollectionId id() const { return id_; }
   /// The element of this index. (A template, so that a proxy may be a member of a class before C is
   /// complete.)
   template <class Of = C>
@@ -112,12 +111,6 @@ class ArrayProxy {
     return *static_cast<detail::Array<C>*>(collection);
   }
 
-  friend auto operator<=>(const ArrayProxy&, const ArrayProxy&) = default;
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(id_);
-  }
-
  private:
   friend class PrioritisedArray<C>;
 
@@ -150,14 +143,10 @@ class ArrayProxy {
       naming::name_of<&ArrayProxy::call_target<F, T>>(), &ArrayProxy::call_target<F, T>,
       &ArrayProxy::describe_target<F, T>};
 
-  CollectionId id_{};
+  using detail::WholeHandle<ArrayProxy>::id_;
 };
 
 }  // namespace tess
 
 template <class C>
-struct std::hash<tess::ArrayProxy<C>> {
-  std::size_t operator()(const tess::ArrayProxy<C>& proxy) const {
-    return std::hash<tess::CollectionId>()(proxy.id());
-  }
-};
+struct std::hash<tess::ArrayProxy<C>> : tess::detail::HashOfHandle {};

@@ -6,6 +6,7 @@
 
 #include "runtime/ask.hpp"
 #include "runtime/collections/arrays/typed_array.hpp"
+#include "runtime/core/handle.hpp"
 #include "runtime/priority.hpp"
 #include "runtime/scheduler/pe_action.hpp"
 #include "runtime/timer.hpp"
@@ -308,6 +309,4 @@ class ElementProxy {
 }  // namespace tess
 
 template <class C, class Index>
-struct std::hash<tess::ElementProxy<C, Index>> {
-  std::size_t operator()(const tess::ElementProxy<C, Index>& proxy) const { return proxy.hash(); }
-};
+struct std::hash<tess::ElementProxy<C, Index>> : tess::detail::HashOfHandle {};

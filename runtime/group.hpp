@@ -94,12 +94,10 @@ class MemberProxy {
 
 /// The proxy of a whole group.
 template <class G>
-class GroupProxy {
+class GroupProxy : public detail::WholeHandle<GroupProxy<G>> {
  public:
-  GroupProxy() = default;
-  explicit GroupProxy(CollectionId id) : id_(id) {}
+  using detail::WholeHandle<GroupProxy>::WholeHandle;
 
-  [[nodiscard]] CollectionId id() const { return id_; }
   [[nodiscard]] MemberProxy<G> operator[](PeId pe) const { return MemberProxy<G>(id_, pe); }
 
   /// The member on this PE; null if the group is not known here yet or was destroyed.
@@ -144,14 +142,8 @@ class GroupProxy {
   /// again has no effect.
   void destroy() const { detail::end_collection(id_); }
 
-  friend auto operator<=>(const GroupProxy&, const GroupProxy&) = default;
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(id_);
-  }
-
  private:
-  CollectionId id_{};
+  using detail::WholeHandle<GroupProxy>::id_;
 };
 
 /// Creates a group: one G per PE, constructed with these arguments. Returns immediately.
@@ -166,12 +158,6 @@ GroupProxy<G> create_group(Args&&... args) {
 }  // namespace tess
 
 template <class G>
-struct std::hash<tess::MemberProxy<G>> {
-  std::size_t operator()(const tess::MemberProxy<G>& proxy) const { return proxy.hash(); }
-};
+struct std::hash<tess::MemberProxy<G>> : tess::detail::HashOfHandle {};
 template <class G>
-struct std::hash<tess::GroupProxy<G>> {
-  std::size_t operator()(const tess::GroupProxy<G>& proxy) const {
-    return std::hash<tess::CollectionId>()(proxy.id());
-  }
-};
+struct std::hash<tess::GroupProxy<G>> : tess::detail::HashOfHandle {};

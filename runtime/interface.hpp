@@ -356,6 +356,7 @@ class InterfaceArray {
   [[nodiscard]] CollectionId id() const { return id_; }
 
   friend bool operator==(const InterfaceArray&, const InterfaceArray&) = default;
+  [[nodiscard]] std::size_t hash() const { return std::hash<CollectionId>()(id_); }
   template <class Ar>
   void serialize(Ar& ar) {
     ar(id_, face_);
@@ -369,6 +370,6 @@ class InterfaceArray {
 }  // namespace tess
 
 template <class I, class Index>
-struct std::hash<tess::InterfaceProxy<I, Index>> {
-  std::size_t operator()(const tess::InterfaceProxy<I, Index>& proxy) const { return proxy.hash(); }
-};
+struct std::hash<tess::InterfaceProxy<I, Index>> : tess::detail::HashOfHandle {};
+template <class I, class Index>
+struct std::hash<tess::InterfaceArray<I, Index>> : tess::detail::HashOfHandle {};

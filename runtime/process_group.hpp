@@ -223,12 +223,11 @@ consteval bool check_shared_entry() {
 
 /// The proxy of a process group.
 template <class G>
-class ProcessGroupProxy {
+class ProcessGroupProxy : public detail::WholeHandle<ProcessGroupProxy<G>> {
   using Part = detail::ProcessPart<G>;
 
  public:
-  ProcessGroupProxy() = default;
-  explicit ProcessGroupProxy(CollectionId id) : id_(id) {}
+  using detail::WholeHandle<ProcessGroupProxy>::WholeHandle;
 
   /// Returns f(const G&) for the object of this process, while others may read it.
   template <class F>
@@ -285,15 +284,8 @@ class ProcessGroupProxy {
   /// Ends the group on all PEs.
   void destroy() const { detail::end_collection(id_); }
 
-  [[nodiscard]] CollectionId id() const { return id_; }
-  friend auto operator<=>(const ProcessGroupProxy&, const ProcessGroupProxy&) = default;
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(id_);
-  }
-
  private:
-  CollectionId id_{};
+  using detail::WholeHandle<ProcessGroupProxy>::id_;
 };
 
 /// Creates one G in each process, constructed with these arguments.
@@ -307,12 +299,11 @@ ProcessGroupProxy<G> create_process_group(Args&&... args) {
 
 /// Data that all PEs of a process read in the same memory.
 template <class T>
-class ReadOnly {
+class ReadOnly : public detail::WholeHandle<ReadOnly<T>> {
   using Part = detail::ReadOnlyPart<T>;
 
  public:
-  ReadOnly() = default;
-  explicit ReadOnly(CollectionId id) : id_(id) {}
+  using detail::WholeHandle<ReadOnly>::WholeHandle;
 
   /// The data; valid until destroy().
   [[nodiscard]] const T& operator*() const { return GroupProxy<Part>(id_).local().get(); }
@@ -322,14 +313,8 @@ class ReadOnly {
   /// Frees the data in all processes.
   void destroy() const { detail::end_collection(id_); }
 
-  friend auto operator<=>(const ReadOnly&, const ReadOnly&) = default;
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(id_);
-  }
-
  private:
-  CollectionId id_{};
+  using detail::WholeHandle<ReadOnly>::id_;
 };
 
 /// Sends the data to each process.
@@ -340,3 +325,8 @@ ReadOnly<std::decay_t<T>> create_read_only(T&& data) {
 }
 
 }  // namespace tess
+
+template <class G>
+struct std::hash<tess::ProcessGroupProxy<G>> : tess::detail::HashOfHandle {};
+template <class T>
+struct std::hash<tess::ReadOnly<T>> : tess::detail::HashOfHandle {};

@@ -70,6 +70,7 @@ class SectionProxy {
   }
 
   friend auto operator<=>(const SectionProxy&, const SectionProxy&) = default;
+  [[nodiscard]] std::size_t hash() const { return static_cast<std::size_t>(id_.value); }
   template <class Ar>
   void serialize(Ar& ar) {
     ar(array_, id_);
@@ -152,3 +153,6 @@ SectionProxy<C> create_section_if(const ArrayProxy<C>& array, const Condition& c
 }
 
 }  // namespace tess
+
+template <class C>
+struct std::hash<tess::SectionProxy<C>> : tess::detail::HashOfHandle {};

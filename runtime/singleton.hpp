@@ -16,14 +16,12 @@ namespace tess {
 
 /// The proxy of a chare that create_one() made.
 template <class C>
-class ChareProxy {
+class ChareProxy : public detail::WholeHandle<ChareProxy<C>> {
   static_assert(std::is_default_constructible_v<typename C::Index>,
                 "the index of a single chare has a default constructor");
 
  public:
-  /// Of no chare: it can only be assigned to.
-  ChareProxy() = default;
-  explicit ChareProxy(CollectionId id) : id_(id) {}
+  using detail::WholeHandle<ChareProxy>::WholeHandle;
 
   template <auto F, class... Args>
   void send(Args&&... args) const {
@@ -54,16 +52,9 @@ class ChareProxy {
 
   /// The chare as the element that it is.
   [[nodiscard]] ElementProxy<C> element() const { return {id_, typename C::Index{}}; }
-  [[nodiscard]] CollectionId id() const { return id_; }
-
-  friend auto operator<=>(const ChareProxy&, const ChareProxy&) = default;
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(id_);
-  }
 
  private:
-  CollectionId id_{};
+  using detail::WholeHandle<ChareProxy>::id_;
 };
 
 /// Creates one chare on that PE. Returns immediately: messages wait for it.
@@ -86,8 +77,4 @@ ChareProxy<C> create_one(Args&&... args) {
 }  // namespace tess
 
 template <class C>
-struct std::hash<tess::ChareProxy<C>> {
-  std::size_t operator()(const tess::ChareProxy<C>& proxy) const {
-    return std::hash<tess::CollectionId>()(proxy.id());
-  }
-};
+struct std::hash<tess::ChareProxy<C>> : tess::detail::HashOfHandle {};
