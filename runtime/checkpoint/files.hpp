@@ -64,7 +64,7 @@ void write_last(const std::string& folder, const std::string& name, const std::s
 
 /// The folder of a checkpoint.
 [[nodiscard]] std::string folder_of(const std::string& folder, std::uint64_t number);
-/// Makes the folder of a checkpoint, and the one around it.
+/// Makes the folder of a checkpoint, and those around it, durably.
 void make_folder(const std::string& path);
 /// The numbers of the checkpoints in a folder, the latest first, complete or not. None if there is
 /// no such folder.

@@ -9,11 +9,34 @@
 #include "tests/support/scratch.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <filesystem>
 #include <fstream>
+#include <mutex>
+#include <set>
 #include <span>
+#include <sys/syscall.h>
+#include <unistd.h>
 #include <vector>
+
+namespace {
+
+std::mutex of_synced;
+std::set<std::string> synced;  // all paths that fsync() made durable
+
+}  // namespace
+
+/// In place of the C library's.
+extern "C" int fsync(int file) {
+  std::array<char, 4096> path{};
+  const std::string link = "/proc/self/fd/" + std::to_string(file);
+  if (::readlink(link.c_str(), path.data(), path.size() - 1) > 0) {
+    const std::scoped_lock lock(of_synced);
+    synced.insert(path.data());
+  }
+  return static_cast<int>(::syscall(SYS_fsync, file));
+}
 
 namespace {
 
@@ -145,6 +168,26 @@ TEST_CASE("a damaged checkpoint is not one of those that are kept", "[runtime][c
   run(next);
   CHECK(next.step == 3);
   CHECK(tess::detail::numbers_in(folder) == Numbers{4, 2});
+}
+
+TEST_CASE("each folder that is made for a checkpoint is an entry of a folder that is durable",
+          "[runtime][checkpoint]") {
+  const tess::test::Scratch scratch;
+  const fs::path root = fs::canonical(scratch.path(""));
+  for (const char* name : {"a/b/c", "d/e/", "f/../g/./h"}) {
+    CAPTURE(name);
+    const std::string folder = scratch.path(name);
+    synced.clear();
+    Job job{.from = "", .folder = folder};
+    run(job);
+    REQUIRE(job.refused.empty());
+    fs::path at = fs::canonical(tess::latest_checkpoint(folder));
+    CHECK(synced.contains(at / "main.part"));  // its name until it is durable
+    for (; at != root; at = at.parent_path()) {
+      CAPTURE(at);
+      CHECK(synced.contains(at.parent_path()));
+    }
+  }
 }
 
 TEST_CASE("a checksum knows the order of a file's blocks, and the length of the last",
