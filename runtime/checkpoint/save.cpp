@@ -450,9 +450,12 @@ Task write_checkpoint(std::string folder, std::string state_type,
     co_await save_all(folder, std::move(main), std::move(pack), std::move(options), begun);
   } catch (const Error&) {
     error = std::current_exception();
-  } catch (const std::exception& other) {  // of the file system, or of the memory
+  } catch (const std::exception& other) {  // of the state's serialize(), the files, or the memory
     error =
         std::make_exception_ptr(Error(ErrorCode::environment, text(folder, ": ", other.what())));
+  } catch (...) {
+    error = std::make_exception_ptr(
+        Error(ErrorCode::environment, text(folder, ": an exception that is not a std::exception")));
   }
   if (error && !begun.writers.empty()) {  // it may have filled the memory or the disk
     AskAll<&remove_here> removed(RemoveQuestion{folder, {begun.number}}, begun.writers);
