@@ -26,7 +26,7 @@ struct FileSum {
   std::uint64_t hash = 0;     ///< of these bytes
 };
 
-inline constexpr std::uint32_t checkpoint_version = 5;
+inline constexpr std::uint32_t checkpoint_version = 6;
 
 /// Writes a file piece by piece. All of these throw Error with the name of the file and what is
 /// wrong.

@@ -135,6 +135,38 @@ TEST_CASE("a run with two folders goes on with both after a restart from one",
         std::string::npos);
 }
 
+TEST_CASE("two runs that restart from one checkpoint write into folders of their own",
+          "[runtime][checkpoint]") {
+  const tess::test::Scratch scratch;
+  const std::string saved = scratch.path("saved"), beside = scratch.path("beside");
+  Job common{.from = "", .folder = saved, .second = beside};
+  run(common);
+  Job one{.from = saved, .folder = scratch.path("one"), .n_steps = 2};
+  run(one);
+  CHECK(one.refused.empty());
+  Job two{.from = saved, .folder = one.folder};
+  run(two);
+  CHECK(two.refused.find("one/checkpoint-000002 is a checkpoint of another run") !=
+        std::string::npos);
+  CHECK(tess::detail::numbers_in(one.folder) == Numbers{2, 1});
+  Job further{.from = one.folder, .folder = one.folder};
+  run(further);
+  CHECK(further.refused.empty());
+  CHECK(tess::detail::numbers_in(one.folder) == Numbers{3, 2});
+
+  // A folder that the common run began may be gone on with again when a restart was in vain.
+  for (const std::uint64_t number : {2U, 3U}) {
+    Job again{.from = saved, .folder = beside};
+    run(again);
+    CHECK(again.refused.empty());
+    CHECK(tess::detail::numbers_in(beside) == Numbers{number, number - 1});
+    if (number == 2) continue;
+    Job too_late{.from = saved, .folder = beside};
+    run(too_late);
+    CHECK_FALSE(too_late.refused.empty());  // both that are left are of those restarts
+  }
+}
+
 TEST_CASE("a checkpoint that another run writes meanwhile is noticed", "[runtime][checkpoint]") {
   const tess::test::Scratch scratch;
   Job other{.from = "", .folder = scratch.path("other")};
