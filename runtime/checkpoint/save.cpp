@@ -5,7 +5,7 @@
 #include "runtime/checkpoint/manifest.hpp"
 #include "runtime/checkpoint/quiet.hpp"
 #include "runtime/collections/collection.hpp"
-#include "runtime/collections/elements/index_map.hpp"
+#include "runtime/collections/home_of_one.hpp"
 #include "runtime/core/error.hpp"
 #include "runtime/core/text.hpp"
 #include "runtime/report/waiting.hpp"
@@ -83,9 +83,10 @@ struct HereSaved {
   CollectionId id;
   bool has_sections = false;
   std::uint64_t n_elements = 0;
+  std::vector<std::byte> map;  // of a single chare that is here
   template <class Ar>
   void serialize(Ar& ar) {
-    ar(id, has_sections, n_elements);
+    ar(id, has_sections, n_elements, map);
   }
 };
 struct SaveAnswer {
@@ -126,9 +127,12 @@ SaveAnswer save_here(Pe& pe, const SaveQuestion& question) {
   answer.numbers = pe.collection_numbers().made();
   answer.places_of_futures = pe.places_of_futures();
   answer.timers = pe.timers().n_made();
-  for (const Collection* collection : collections)
-    answer.collections.push_back(
-        {collection->id(), collection->has_sections(), collection->n_local()});
+  for (const Collection* collection : collections) {
+    HereSaved here{collection->id(), collection->has_sections(), collection->n_local(), {}};
+    if (here.n_elements != 0)
+      here.map = HomeOfOne::saved_from(collection->index_map(), pe.id(), pe.n_pes());
+    answer.collections.push_back(std::move(here));
+  }
   answer.error = error_of([&] {
     FileWriter file(question.folder, text("pe-", pe.id().value));
     Buffer bytes;
@@ -315,10 +319,11 @@ void add_answer(SaveAnswer& answer, Manifest& manifest, MainPart& main) {
   main.sections.insert(main.sections.end(), answer.sections.begin(), answer.sections.end());
   for (std::size_t i = 0; i < answer.collections.size(); ++i) {
     SavedCollection& all = main.collections.at(i);
-    const HereSaved& one = answer.collections[i];
+    HereSaved& one = answer.collections[i];
     TESS_CHECK(all.id == one.id, "the PEs have different collections at a checkpoint");
     all.has_sections = all.has_sections || one.has_sections;
     all.n_elements += one.n_elements;
+    if (!one.map.empty()) all.map = std::move(one.map);
   }
 }
 
