@@ -18,7 +18,8 @@
 // Saved are the elements of all arrays, groups, single chares and sections, wherever they are, and
 // the state object of the main coroutine, with the proxies in it. Elements need a default
 // constructor and serialize(), as for migration. After a restart they are on the homes of their
-// indices.
+// indices, single chares where they were. On another number of PEs these are spread as a new run
+// spreads them.
 //
 // A checkpoint is made at a quiet point: checkpoint() waits until no message is under way, and
 // throws an Error that names what waits if something does: a coroutine of a chare, an unfinished

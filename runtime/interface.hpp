@@ -161,7 +161,8 @@ template <class I, class IndexType>
 class InterfaceArray;
 
 /// The proxy of an element by an interface of its class: a value that can be stored and sent. I may
-/// be any class with virtual functions; a priority in its EntryAttributes holds for its messages.
+/// be any class with virtual functions; a priority in its EntryAttributes holds for its messages,
+/// create_here and create_home do not compile.
 template <class I, class IndexType = Index1>
 class InterfaceProxy {
  public:
@@ -227,11 +228,16 @@ class InterfaceProxy {
   InterfaceProxy(CollectionId collection, const Index& index, detail::FacePointer<I> face)
       : collection_(collection), index_(index), face_(face) {}
 
+  template <auto F>
+  static consteval bool creates_none() {
+    static_assert(detail::entry_rule<I, F>.creates == detail::Creates::no,
+                  "an interface creates no element: its class is not known");
+    return true;
+  }
   template <auto F, class... Args>
   void send_with(Priority priority, Args&&... args) const {
     static_assert(detail::check_entry<I, F, Args...>());
-    static_assert(detail::entry_rule<I, F>.creates == detail::Creates::no,
-                  "an interface creates no element: its class is not known");
+    static_assert(creates_none<F>());
     Pe& pe = current_pe();
     auto* message = [&]<class... P>(std::tuple<P...>*) {
       return detail::InterfaceCall<I, IndexType, F>::make(
@@ -248,6 +254,7 @@ class InterfaceProxy {
   [[nodiscard]] Ask<detail::Implements<I, IndexType>, F> ask_with(Priority priority,
                                                                   Args&&... args) const {
     static_assert(detail::check_ask<I, F, Args...>());
+    static_assert(creates_none<F>());
     Pe& pe = current_pe();
     Ask<detail::Implements<I, IndexType>, F> reply(collection(), index_);
     detail::InterfacePlace<I> place;

@@ -6,10 +6,14 @@
 //
 // It is an array of one element, so it may migrate, and its proxy can be sent. Each is known on
 // every PE: for very many tasks use one array, whose elements are inserted or created on demand.
+// After a restart it is on the PE on which it was saved. On another number of PEs the runtime
+// chooses again; a PE that the program chose counts modulo their number.
 #pragma once
 
 #include "runtime/array.hpp"
+#include "runtime/collections/home_of_one.hpp"
 
+#include <memory>
 #include <utility>
 
 namespace tess {
@@ -57,10 +61,40 @@ class ChareProxy : public detail::WholeHandle<ChareProxy<C>> {
   using detail::WholeHandle<ChareProxy>::id_;
 };
 
+namespace detail {
+
+template <class C>
+struct CreateOne : CreateArray<C> {
+  PeId given;
+  template <class Ar>
+  void serialize(Ar& ar) {
+    CreateArray<C>::serialize(ar);
+    ar(given);
+  }
+};
+template <class C>
+void create_one_arrives(Pe& pe, CreateOne<C>&& m) {
+  make_array(pe, m, std::make_shared<HomeOfOne>(m.id, m.given, pe.n_pes()));
+}
+
+/// The array of a single chare; `given` is −1 if the runtime chooses its PE.
+template <class C>
+ChareProxy<C> create_for_one(PeId given) {
+  check_class<C>();
+  Pe& pe = current_pe();
+  CreateOne<C> one{new_array<C>(pe, sparse), given};
+  const ChareProxy<C> chare(one.id);
+  send_to_all<&create_one_arrives<C>>(pe, std::move(one));
+  return chare;
+}
+
+}  // namespace detail
+
 /// Creates one chare on that PE. Returns immediately: messages wait for it.
 template <class C, class... Args>
 ChareProxy<C> create_one_on(PeId pe, Args&&... args) {
-  const ChareProxy<C> chare(create<C>(sparse).id());
+  detail::check_exists(current_pe(), pe);
+  const auto chare = detail::create_for_one<C>(pe);
   chare.element().insert_on(pe, std::forward<Args>(args)...);
   return chare;
 }
@@ -68,7 +102,7 @@ ChareProxy<C> create_one_on(PeId pe, Args&&... args) {
 /// The same; the runtime chooses the PE. Many such chares are spread over all PEs.
 template <class C, class... Args>
 ChareProxy<C> create_one(Args&&... args) {
-  const ChareProxy<C> chare(create<C>(sparse).id());
+  const auto chare = detail::create_for_one<C>(PeId{-1});
   chare.element().insert_on(detail::root_of(chare.id(), current_pe().n_pes()),
                             std::forward<Args>(args)...);
   return chare;

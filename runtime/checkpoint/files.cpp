@@ -90,6 +90,11 @@ void sync_folder(const std::string& path) {
   Open(path, O_RDONLY | O_DIRECTORY, "cannot be opened").sync();
 }
 
+bool is_there(const fs::path& path) {
+  std::error_code unknown;
+  return fs::exists(path, unknown);
+}
+
 /// Gives a file that was written beside its name.
 void rename_beside(const std::string& path) {
   const std::string beside = path + ".part";
@@ -192,8 +197,7 @@ std::string read_text(const std::string& folder, const std::string& name) {
 }
 
 bool has_file(const std::string& folder, const std::string& name) {
-  std::error_code unknown;
-  return fs::exists(folder + "/" + name, unknown);
+  return is_there(folder + "/" + name);
 }
 
 Buffer read_file(const std::string& folder, const FileSum& sum) {
@@ -225,10 +229,18 @@ std::string folder_of(const std::string& folder, std::uint64_t number) {
 }
 
 void make_folder(const std::string& path) {
+  // Each folder that is made is a new entry of the one around it, which is synced for that. The last
+  // one counts as new in any case: another process may make it at the same time.
+  std::vector<fs::path> changed;
+  fs::path at = fs::absolute(canonical(path));
+  do {
+    at = at.parent_path();
+    changed.push_back(at);
+  } while (!is_there(at) && at != at.parent_path());
   std::error_code error;
   fs::create_directories(path, error);
   if (error) fail(ErrorCode::environment, path, ": cannot be made: ", error.message());
-  sync_folder(fs::absolute(path).parent_path().string());
+  for (const fs::path& folder : changed) sync_folder(folder.string());
 }
 
 std::vector<std::uint64_t> numbers_in(const std::string& folder) {

@@ -26,7 +26,7 @@ struct FileSum {
   std::uint64_t hash = 0;     ///< of these bytes
 };
 
-inline constexpr std::uint32_t checkpoint_version = 5;
+inline constexpr std::uint32_t checkpoint_version = 6;
 
 /// Writes a file piece by piece. All of these throw Error with the name of the file and what is
 /// wrong.
@@ -64,7 +64,7 @@ void write_last(const std::string& folder, const std::string& name, const std::s
 
 /// The folder of a checkpoint.
 [[nodiscard]] std::string folder_of(const std::string& folder, std::uint64_t number);
-/// Makes the folder of a checkpoint, and the one around it.
+/// Makes the folder of a checkpoint, and those around it, durably.
 void make_folder(const std::string& path);
 /// The numbers of the checkpoints in a folder, the latest first, complete or not. None if there is
 /// no such folder.

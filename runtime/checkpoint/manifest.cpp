@@ -37,7 +37,7 @@ Manifest parse(const std::string& path, const std::string& text) {
   manifest.n_pes = json.at("pes").get<std::int32_t>();
   manifest.n_processes = json.at("processes").get<std::int32_t>();
   manifest.program = from_hex(json.at("program"));
-  manifest.run = from_hex(json.at("run"));
+  for (const Json& run : json.at("runs")) manifest.lineage.push_back(from_hex(run));
   manifest.note = json.at("note").get<std::string>();
   manifest.buddy_copies = json.at("buddy_copies").get<bool>();
   for (const Json& file : json.at("files"))
@@ -46,6 +46,7 @@ Manifest parse(const std::string& path, const std::string& text) {
   if (manifest.n_pes < 1 || manifest.files.size() != static_cast<std::size_t>(manifest.n_pes) + 1)
     fail(ErrorCode::bad_file, path, " lists ", manifest.files.size(), " files for ", manifest.n_pes,
          " PEs");
+  if (manifest.lineage.empty()) fail(ErrorCode::bad_file, path, " does not say which run wrote it");
   return manifest;
 }
 
@@ -66,7 +67,8 @@ std::string to_text(const Manifest& manifest, const MainPart& main) {
   json["pes"] = manifest.n_pes;
   json["processes"] = manifest.n_processes;
   json["program"] = hex(manifest.program);
-  json["run"] = hex(manifest.run);
+  json["runs"] = Json::array();
+  for (const std::uint64_t run : manifest.lineage) json["runs"].push_back(hex(run));
   json["note"] = manifest.note;
   json["buddy_copies"] = manifest.buddy_copies;
   json["collections"] = Json::array();

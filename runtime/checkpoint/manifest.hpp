@@ -47,11 +47,11 @@ struct Manifest {
   std::uint64_t number = 0;
   std::int32_t n_pes = 0;
   std::int32_t n_processes = 0;
-  std::uint64_t program = 0;   ///< Registry::fingerprint()
-  std::uint64_t run = 0;       ///< Runtime::checkpoint_run()
-  std::string note;            ///< CheckpointOptions::note
-  bool buddy_copies = false;   ///< CheckpointOptions::buddy_copies
-  std::vector<FileSum> files;  ///< of PE 0, 1, …, and at last "main"
+  std::uint64_t program = 0;           ///< Registry::fingerprint()
+  std::vector<std::uint64_t> lineage;  ///< Runtime::lineage() of the run that wrote it
+  std::string note;                    ///< CheckpointOptions::note
+  bool buddy_copies = false;           ///< CheckpointOptions::buddy_copies
+  std::vector<FileSum> files;          ///< of PE 0, 1, …, and at last "main"
 };
 
 /// Throws Error for a note that a manifest cannot hold.

@@ -358,7 +358,9 @@ TaskOf<std::vector<std::byte>> read_checkpoint(std::string folder, std::string s
   (void)co_await thawed;
   pe.runtime().made_before_restart() = std::move(chosen->main.numbers);
   pe.runtime().own_checkpoints(canonical(folder)) = std::move(own);
-  pe.runtime().checkpoint_run() = chosen->manifest.run;
+  // A number of its own: other runs may restart from the same checkpoint.
+  pe.runtime().lineage() = std::move(chosen->manifest.lineage);
+  pe.runtime().lineage().push_back(new_run());
   co_return std::move(chosen->main.state);
 }
 

@@ -5,7 +5,7 @@
 #include "runtime/checkpoint/manifest.hpp"
 #include "runtime/checkpoint/quiet.hpp"
 #include "runtime/collections/collection.hpp"
-#include "runtime/collections/elements/index_map.hpp"
+#include "runtime/collections/home_of_one.hpp"
 #include "runtime/core/error.hpp"
 #include "runtime/core/text.hpp"
 #include "runtime/report/waiting.hpp"
@@ -83,9 +83,10 @@ struct HereSaved {
   CollectionId id;
   bool has_sections = false;
   std::uint64_t n_elements = 0;
+  std::vector<std::byte> map;  // of a single chare that is here
   template <class Ar>
   void serialize(Ar& ar) {
-    ar(id, has_sections, n_elements);
+    ar(id, has_sections, n_elements, map);
   }
 };
 struct SaveAnswer {
@@ -126,9 +127,12 @@ SaveAnswer save_here(Pe& pe, const SaveQuestion& question) {
   answer.numbers = pe.collection_numbers().made();
   answer.places_of_futures = pe.places_of_futures();
   answer.timers = pe.timers().n_made();
-  for (const Collection* collection : collections)
-    answer.collections.push_back(
-        {collection->id(), collection->has_sections(), collection->n_local()});
+  for (const Collection* collection : collections) {
+    HereSaved here{collection->id(), collection->has_sections(), collection->n_local(), {}};
+    if (here.n_elements != 0)
+      here.map = HomeOfOne::saved_from(collection->index_map(), pe.id(), pe.n_pes());
+    answer.collections.push_back(std::move(here));
+  }
   answer.error = error_of([&] {
     FileWriter file(question.folder, text("pe-", pe.id().value));
     Buffer bytes;
@@ -226,43 +230,50 @@ void fail_for_first(const std::vector<std::string>& errors) {
     if (!error.empty()) fail(ErrorCode::environment, "the checkpoint failed: ", error);
 }
 
-/// The run that wrote a checkpoint; 0 if its manifest here is damaged.
-std::uint64_t run_here(Pe& /*pe*/, const FolderQuestion& question) {
+using Lineage = std::vector<std::uint64_t>;
+
+/// The lineage of the run that wrote a checkpoint; empty if its manifest here is damaged.
+Lineage lineage_here(Pe& /*pe*/, const FolderQuestion& question) {
   try {
-    return read_manifest(question.folder).run;
+    return read_manifest(question.folder).lineage;
   } catch (const Error&) {
-    return 0;
+    return {};
   }
 }
 
-/// The run that wrote a checkpoint; 0 if no host has a manifest that can be read.
-TaskOf<std::uint64_t> run_of(std::string folder, const Listing& listing, std::uint64_t number) {
+/// The same; empty if no host has a manifest that can be read.
+TaskOf<Lineage> lineage_of(std::string folder, const Listing& listing, std::uint64_t number) {
   for (std::size_t host = 0; host < listing.complete_on.size(); ++host) {
     if (!listing.complete_on[host].contains(number)) continue;
     const PeId there = listing.hosts.first.at(host);
-    AskAll<&run_here> asked(FolderQuestion{folder_of(folder, number)}, {there});
-    const std::vector<std::uint64_t> runs = co_await asked;
-    const std::uint64_t run = runs[static_cast<std::size_t>(there.value)];
-    if (run != 0) co_return run;
+    AskAll<&lineage_here> asked(FolderQuestion{folder_of(folder, number)}, {there});
+    std::vector<Lineage> lineages = co_await asked;
+    Lineage& lineage = lineages[static_cast<std::size_t>(there.value)];
+    if (!lineage.empty()) co_return std::move(lineage);
   }
-  co_return 0;
+  co_return Lineage();
 }
 
-/// After a restart from another folder: which checkpoints here the run wrote before. Those whose
-/// manifest cannot be read are passed over, as a restart does.
+/// After a restart from another folder: which checkpoints here a run of the lineage wrote before.
+/// Those whose manifest cannot be read are passed over, as a restart does. So are those of other
+/// restarts from a checkpoint of the lineage: such a run may have died before it wrote to the folder
+/// that this one restarted from. A folder that has only those is theirs.
 TaskOf<Runtime::OwnCheckpoints> find_own(std::string folder, const Listing& listing,
-                                         std::uint64_t run) {
+                                         const Lineage& lineage) {
   Runtime::OwnCheckpoints ours;
   std::vector<std::uint64_t> unreadable;
   for (const std::uint64_t number : listing.numbers) {
     if (!listing.is_complete(number)) continue;
-    const std::uint64_t found = co_await run_of(folder, listing, number);
-    if (found == run) {
+    const Lineage found = co_await lineage_of(folder, listing, number);
+    if (found.empty()) {
+      unreadable.push_back(number);
+    } else if (std::ranges::count(lineage, found.back()) != 0) {
       ours.last = listing.numbers.front();
       ours.refused = unreadable;
+      break;
+    } else if (found.front() != lineage.front()) {
+      break;
     }
-    if (found != 0) break;
-    unreadable.push_back(number);
   }
   co_return ours;
 }
@@ -277,11 +288,6 @@ void require_own(const std::string& folder, const Listing& listing,
            " is a checkpoint of another run: restart from ", folder, ", or give another folder");
 }
 
-std::uint64_t new_run() {
-  std::random_device random;
-  return std::uint64_t{random()} << 32U | random() | 1U;
-}
-
 Manifest next_manifest(Pe& pe, const Listing& before, const CheckpointOptions& options) {
   check_note(options.note);
   Manifest manifest;
@@ -289,7 +295,7 @@ Manifest next_manifest(Pe& pe, const Listing& before, const CheckpointOptions& o
   manifest.n_pes = pe.n_pes();
   manifest.n_processes = pe.machine().n_processes();
   manifest.program = Registry::fingerprint();
-  manifest.run = pe.runtime().checkpoint_run();
+  manifest.lineage = pe.runtime().lineage();
   manifest.note = options.note;
   manifest.buddy_copies = options.buddy_copies;
   return manifest;
@@ -313,10 +319,11 @@ void add_answer(SaveAnswer& answer, Manifest& manifest, MainPart& main) {
   main.sections.insert(main.sections.end(), answer.sections.begin(), answer.sections.end());
   for (std::size_t i = 0; i < answer.collections.size(); ++i) {
     SavedCollection& all = main.collections.at(i);
-    const HereSaved& one = answer.collections[i];
+    HereSaved& one = answer.collections[i];
     TESS_CHECK(all.id == one.id, "the PEs have different collections at a checkpoint");
     all.has_sections = all.has_sections || one.has_sections;
     all.n_elements += one.n_elements;
+    if (!one.map.empty()) all.map = std::move(one.map);
   }
 }
 
@@ -381,9 +388,9 @@ Task save_all(std::string folder, MainPart main, std::function<std::vector<std::
     listing = list_shared(folder, pe.n_pes());
   }
   Runtime::OwnCheckpoints& ours = pe.runtime().own_checkpoints(canonical(folder));
-  std::uint64_t& run = pe.runtime().checkpoint_run();
-  if (run == 0) run = new_run();
-  if (ours.last == 0) ours = co_await find_own(folder, listing, run);
+  Lineage& lineage = pe.runtime().lineage();
+  if (lineage.empty()) lineage.push_back(new_run());
+  if (ours.last == 0) ours = co_await find_own(folder, listing, lineage);
   require_own(folder, listing, ours);
   Manifest manifest = next_manifest(pe, listing, options);
   const std::string here = folder_of(folder, manifest.number);
@@ -418,6 +425,11 @@ Task save_all(std::string folder, MainPart main, std::function<std::vector<std::
 
 }  // namespace
 
+std::uint64_t new_run() {
+  std::random_device random;
+  return std::uint64_t{random()} << 32U | random();
+}
+
 TaskOf<Listing> list_all(std::string folder) {
   Pe& pe = current_pe();
   const std::vector<PeId> leaders = first_of_processes(pe);
@@ -450,9 +462,12 @@ Task write_checkpoint(std::string folder, std::string state_type,
     co_await save_all(folder, std::move(main), std::move(pack), std::move(options), begun);
   } catch (const Error&) {
     error = std::current_exception();
-  } catch (const std::exception& other) {  // of the file system, or of the memory
+  } catch (const std::exception& other) {  // of the state's serialize(), the files, or the memory
     error =
         std::make_exception_ptr(Error(ErrorCode::environment, text(folder, ": ", other.what())));
+  } catch (...) {
+    error = std::make_exception_ptr(
+        Error(ErrorCode::environment, text(folder, ": an exception that is not a std::exception")));
   }
   if (error && !begun.writers.empty()) {  // it may have filled the memory or the disk
     AskAll<&remove_here> removed(RemoveQuestion{folder, {begun.number}}, begun.writers);

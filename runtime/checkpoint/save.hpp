@@ -28,6 +28,9 @@ struct Listing;
                                     std::function<std::vector<std::byte>()> pack,
                                     CheckpointOptions options);
 
+/// A number for Runtime::lineage().
+[[nodiscard]] std::uint64_t new_run();
+
 /// Lists the checkpoints in a folder as all processes see it.
 [[nodiscard]] TaskOf<Listing> list_all(std::string folder);
 

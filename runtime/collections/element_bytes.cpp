@@ -9,11 +9,13 @@
 
 namespace tess::detail {
 
-std::uint64_t Collection::n_bytes_of(Element& element, PackElement pack) {
-  Writer count{std::span<std::byte>()};
+namespace {
+
+/// Packs the element; the report of an exception names it, although none of its code runs.
+void pack_named(Element& element, Collection::PackElement pack, Writer& ar) {
   try {
-    pack(element, count);
-  } catch (...) {  // the report names the element, none of whose code runs
+    pack(element, ar);
+  } catch (...) {
     Pe& pe = current_pe();
     Context writes = pe.context();
     writes.element = &element;
@@ -22,6 +24,13 @@ std::uint64_t Collection::n_bytes_of(Element& element, PackElement pack) {
     pe.enter(before);
     throw;
   }
+}
+
+}  // namespace
+
+std::uint64_t Collection::n_bytes_of(Element& element, PackElement pack) {
+  Writer count{std::span<std::byte>()};
+  pack_named(element, pack, count);
   return count.n_bytes();
 }
 
@@ -29,7 +38,7 @@ Buffer Collection::bytes_of(Element& element, PackElement pack) {
   Buffer bytes;
   bytes.resize(n_bytes_of(element, pack));
   Writer ar{std::span(bytes.data(), bytes.size())};
-  pack(element, ar);
+  pack_named(element, pack, ar);
   return bytes;
 }
 
@@ -49,6 +58,8 @@ void Collection::read_saved_members(Element& element, Reader& ar) const {
     if (ar.remaining() != 0) wrong = text(ar.remaining(), " bytes are left");
   } catch (const std::exception& error) {
     wrong = error.what();
+  } catch (...) {
+    wrong = "an exception that is not a std::exception";
   }
   if (wrong.empty()) return;
   fail(ErrorCode::bad_file, "the checkpoint does not fit this program: ", name(),

@@ -114,9 +114,10 @@ class Runtime final : public Program {
   [[nodiscard]] OwnCheckpoints& own_checkpoints(const std::string& folder) {
     return own_checkpoints_[folder];
   }
-  /// Which run wrote a checkpoint: a random number, which its restarts go on with. 0: none is
-  /// written. On PE 0.
-  [[nodiscard]] std::uint64_t& checkpoint_run() { return checkpoint_run_; }
+  /// The random numbers of the runs that this one goes on with by restarts, the first one first,
+  /// and at last its own. Empty until a checkpoint or restart. Checkpoints tell by it which run
+  /// wrote them. On PE 0.
+  [[nodiscard]] std::vector<std::uint64_t>& lineage() { return lineage_; }
   /// By PE: what the run that a restart goes on with had made, also on PEs that this run lacks. On
   /// PE 0.
   [[nodiscard]] std::vector<CollectionNumbers::Made>& made_before_restart() {
@@ -203,7 +204,7 @@ class Runtime final : public Program {
   Census census_;
   std::map<CollectionId, std::int32_t> empty_on_;          // number of PEs per collection
   std::map<std::string, OwnCheckpoints> own_checkpoints_;  // by folder
-  std::uint64_t checkpoint_run_ = 0;
+  std::vector<std::uint64_t> lineage_;
   std::vector<CollectionNumbers::Made> made_before_restart_;
   bool checkpoint_runs_ = false;
   // On each PE: the greatest exit code requested here.

@@ -6,8 +6,11 @@
 #include "apps/plot/write_file.hpp"
 #include "collide/dn_field/field_file.hpp"
 
+#include <charconv>
 #include <filesystem>
 #include <fmt/format.h>
+#include <string_view>
+#include <system_error>
 #include <vector>
 
 namespace particles {
@@ -16,6 +19,22 @@ namespace fs = std::filesystem;
 
 std::string field_file(std::size_t object) {
   return fmt::format("field_{}.dnf", object);
+}
+
+/// The file of the snapshot after so many steps, in the folder "trajectories".
+std::string snapshot_file(std::int32_t step) {
+  return fmt::format("step_{:09}.vtp", step);
+}
+constexpr std::string_view snapshot_prefix = "step_";
+bool is_named_as_snapshot(const std::string& file) {
+  return file.starts_with(snapshot_prefix) && file.ends_with(".vtp");
+}
+/// True if the run writes a snapshot of this name.
+bool writes_snapshot(const Scene& scene, const std::string& file) {
+  if (!is_named_as_snapshot(file)) return false;
+  std::int32_t step = -1;
+  (void)std::from_chars(file.data() + snapshot_prefix.size(), file.data() + file.size(), step);
+  return file == snapshot_file(step) && traces(scene, step);
 }
 
 /// Throws Error if a file that is written would replace one that is read or written.
@@ -47,8 +66,7 @@ void refuse_to_overwrite(const Scene& scene, const Options& options, const std::
     // The snapshots are too many to compare each.
     for (const fs::path& other : others) {
       const std::string name = other.filename().string();
-      if (name.starts_with("step_") && name.ends_with(".vtp"))
-        check(fs::path("trajectories") / name);
+      if (is_named_as_snapshot(name)) check(fs::path("trajectories") / name);
     }
   }
   if (!options.study) return;
@@ -62,7 +80,7 @@ void write_series(const fs::path& folder, const std::vector<Snapshot>& snapshots
   std::string series =
       "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\">\n<Collection>\n";
   for (const Snapshot& snapshot : snapshots) {
-    const std::string name = fmt::format("step_{:09}.vtp", snapshot.step);
+    const std::string name = snapshot_file(snapshot.step);
     plot::write_file((folder / "trajectories" / name).string(), vtp(snapshot));
     series += fmt::format("<DataSet timestep=\"{}\" file=\"trajectories/{}\"/>\n",
                           snapshot.step * dt, name);
@@ -116,6 +134,14 @@ void prepare_files(const Scene& scene, const Options& options, const std::string
     require("paths.svg");
     require("trajectories.pvd");
     plot::make_folder("--out " + options.out, in / "trajectories");
+    // Snapshots may be very many, but only one whose name is taken can fail in a folder that can be
+    // written.
+    std::error_code unreadable;
+    for (const fs::directory_entry& taken :
+         fs::directory_iterator(in / "trajectories", unreadable)) {
+      const std::string name = taken.path().filename().string();
+      if (writes_snapshot(scene, name)) require("trajectories/" + name);
+    }
   }
   if (!options.study) return;
   for (const std::string& picture : study_pictures())

@@ -10,10 +10,9 @@
 
 namespace particles {
 
-/// Makes the folder of --out, and checks the files that this run will write there (all but the
-/// snapshots, which are many) and that of --json; no file replaces another, `trace` (that of
-/// --trace), or one that the scene reads. Throws Error that names the option, the path and the
-/// remedy.
+/// Makes the folder of --out, and checks the files that this run will write there and that of
+/// --json; no file replaces another, `trace` (that of --trace), or one that the scene reads. Throws
+/// Error that names the option, the path and the remedy.
 void prepare_files(const Scene& scene, const Options& options, const std::string& trace);
 
 /// The points of a snapshot with their ids and velocities, as the text of a VTP file for ParaView,

@@ -23,8 +23,7 @@ std::uint32_t asked(const Scene& scene, std::int32_t step) {
   const bool at_end = step == 0 || step == scene.steps;
   std::uint32_t ask = Stretch::nothing;
   if (at_end || (outputs.statistics > 0 && step % outputs.statistics == 0)) ask |= Stretch::measure;
-  if (outputs.trajectories > 0 && (at_end || step % outputs.trajectories == 0))
-    ask |= Stretch::trace;
+  if (traces(scene, step)) ask |= Stretch::trace;
   if (step == scene.steps && n_audited(scene) < scene.n_particles()) ask |= Stretch::judge;
   return ask;
 }
@@ -73,6 +72,12 @@ void add_sizes(const Stage& stage, RunResult& result) {
 }
 
 }  // namespace
+
+bool traces(const Scene& scene, std::int32_t step) {
+  const std::int32_t every = scene.outputs.trajectories;
+  if (every <= 0 || step < 0 || step > scene.steps) return false;
+  return step % every == 0 || step == scene.steps;
+}
 
 void check_memory(const Scene& scene, int n_processes) {
   constexpr double bytes_per_particle = 6 * sizeof(double) + sizeof(std::uint64_t) + 1;

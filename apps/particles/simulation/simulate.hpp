@@ -46,6 +46,9 @@ struct RunResult {
   std::vector<tess::balance::Round> rounds;  ///< of the balancer, if there is one
 };
 
+/// True if the trajectories have the particles after so many steps.
+[[nodiscard]] bool traces(const Scene& scene, std::int32_t step);
+
 /// Refuses a scene whose fields, which each process builds, and particles, which the processes
 /// share, are larger than the memory that this process may have. Throws Error(environment).
 void check_memory(const Scene& scene, int n_processes);

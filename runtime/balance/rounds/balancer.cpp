@@ -253,7 +253,7 @@ Task Balancer::place_again() {
       co_await group().reduce<&Balancer::recall>(2 * past.since_then >= past.of_last_phase);
   if (n_known != 0) {
     co_await round(Others::fixed);
-    measured_.round_ends();
+    co_await forget_all(Phase::begins_behind_moves);
   } else {
     co_await forget_all(Phase::begins);
   }
@@ -276,7 +276,8 @@ Task Balancer::phase_ends(Others others) {
   }
   if (worth) {
     co_await round(others);
-    measured_.round_ends();
+    // After a barrier resume() begins the phase.
+    if (others == Others::fixed) co_await forget_all(Phase::begins_behind_moves);
   } else {
     co_await forget_all(Phase::ends);
   }
@@ -424,10 +425,17 @@ void Balancer::resume(std::uint32_t round) {
 }
 
 void Balancer::forget(Phase phase, const Callback<void>& done) {
-  if (phase == Phase::ends)
-    measured_.pass_phase();
-  else
-    measured_.clear();
+  switch (phase) {
+    case Phase::ends:
+      measured_.pass_phase();
+      break;
+    case Phase::begins_behind_moves:
+      measured_.round_ends();
+      break;
+    case Phase::begins:
+      measured_.clear();
+      break;
+  }
   contribute(done);
 }
 

@@ -95,8 +95,8 @@ class Balancer final : public Group<Balancer>, private ElementWatcher {
   void moved();
   void move(const std::vector<Move>& moves);
   void resume(std::uint32_t round);
-  /// A phase ends without a round, or begins behind something else.
-  enum class Phase : std::uint8_t { ends, begins };
+  /// A phase ends without a round, begins behind the moves of a round, or behind something else.
+  enum class Phase : std::uint8_t { ends, begins_behind_moves, begins };
   void forget(Phase phase, const Callback<void>& done);
   void sum_past(const Callback<PastLoad>& target);
   void recall(bool interrupted, const Callback<std::uint64_t>& done);

@@ -41,8 +41,9 @@ class Measured {
 
   /// The sums of this PE in the phase so far.
   [[nodiscard]] PhaseSums sums(Others others) const;
-  /// The round that reported is over: what it did on this PE, as the strategy on the coordinator,
-  /// is not background of the phase that begins. For rounds for which the elements wait.
+  /// The round that reported is over: what it did on this PE, such as packing elements, or the
+  /// strategy on the coordinator, is not background of the phase that begins. For rounds for which
+  /// the elements wait.
   void round_ends() { begin_phase(); }
   /// Begins a new phase and discards earlier measurements.
   void clear();

@@ -9,8 +9,10 @@
 #include "runtime/collections/collection_action.hpp"
 #include "runtime/collections/elements/balance_record.hpp"
 #include "runtime/collections/sections.hpp"
+#include "runtime/core/error.hpp"
 #include "runtime/messages/read_all.hpp"
 
+#include <exception>
 #include <span>
 
 namespace tess::detail {
@@ -50,7 +52,11 @@ void Collection::save(Writer& ar, const std::function<void()>& written) {
       ar(SavedKind::balanced, element->balance_->to_save(pe_.start_meter()));
     else
       ar(SavedKind::alive);
-    pack_framed(ar, [this, element](Writer& body) { save_element(*element, body); });
+    try {
+      pack_framed(ar, [this, element](Writer& body) { save_element(*element, body); });
+    } catch (const std::exception& error) {
+      fail(ErrorCode::bad_value, element_text(*element), ": ", error.what());
+    }
     written();
   }
 }

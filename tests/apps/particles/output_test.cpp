@@ -259,8 +259,10 @@ TEST_CASE("a file that cannot be written is refused before the run", "[particles
   Options options;
   options.out = scratch.path("out");
   options.study = true;
-  for (const char* file : {"field_0.dnf", "field.svg", "paths.svg", "trajectories.pvd",
-                           "study_distance.svg", "study_step.csv"}) {
+  for (const char* file :
+       {"field_0.dnf", "field.svg", "paths.svg", "trajectories.pvd",
+        "trajectories/step_000000000.vtp", "trajectories/step_000000020.vtp",
+        "trajectories/step_000000100.vtp", "study_distance.svg", "study_step.csv"}) {
     CAPTURE(file);
     const std::string taken = options.out + "/" + file;
     std::filesystem::create_directories(taken);
@@ -268,6 +270,9 @@ TEST_CASE("a file that cannot be written is refused before the run", "[particles
                Catch::Contains(taken + ": cannot be written: is a directory"));
     std::filesystem::remove(taken);
   }
+  // Names that this run does not write.
+  for (const char* file : {"step_000000030.vtp", "step_000000120.vtp", "step_20.vtp", "step_.vtp"})
+    std::filesystem::create_directories(options.out + "/trajectories/" + file);
   prepare_files(scene, options, {});
 }
 

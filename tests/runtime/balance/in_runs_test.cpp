@@ -109,6 +109,54 @@ TEST_CASE("the time of a strategy is no load of the next phase", "[balance]") {
   }
 }
 
+namespace {
+
+/// It takes a second to pack, and another one to unpack.
+class Bulky : public Chare<Bulky> {
+ public:
+  void work() { charge(std::chrono::milliseconds(100)); }
+  template <class Ar>
+  void serialize(Ar& /*ar*/) {
+    charge(std::chrono::seconds(1));
+  }
+};
+
+/// Rounds between which the elements work, all of which each round sends to the next PE. `seen`: the
+/// background of the PEs, which each round sees.
+Task move_all_around(std::vector<std::vector<double>>& seen) {
+  const auto all = create<Bulky>(range(8));
+  const auto to_next = [&seen](const balance::Snapshot& s) {
+    seen.push_back(s.pes.background);
+    balance::Assignment next = s.elements.pe;
+    for (PeId& pe : next) pe.value = (pe.value + 1) % n_pes();
+    return next;
+  };
+  const BalancerProxy balancer = start_balancing(all, {}, to_next);
+  co_await balancer.begin_phase();
+  for (int round = 0; round < 4; ++round) {
+    co_await epoch([&] { all.broadcast<&Bulky::work>(); });
+    co_await balancer.round();
+  }
+}
+
+}  // namespace
+
+TEST_CASE("what the moves of a round cost is no background of the next phase, on any PE",
+          "[balance]") {
+  for (std::uint64_t seed = 0; seed < 6; ++seed) {
+    CAPTURE(seed);
+    std::vector<std::vector<double>> seen;
+    const test::Machine machine{.pes = 4, .per_process = 1, .seed = seed, .migration = 0};
+    machine.run([&] { return move_all_around(seen); }).require_success();
+    REQUIRE(seen.size() == 4);
+    for (std::size_t round = 0; round < seen.size(); ++round)
+      for (const double background : seen[round]) {
+        CAPTURE(round);
+        CHECK(background < 0.1);
+      }
+  }
+}
+
 TEST_CASE("a round of gossip depends on the seed, and on nothing else", "[balance]") {
   const auto moved = [](std::uint64_t seed) {
     std::vector<std::pair<std::size_t, double>> result;

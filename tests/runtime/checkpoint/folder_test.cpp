@@ -9,11 +9,34 @@
 #include "tests/support/scratch.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <filesystem>
 #include <fstream>
+#include <mutex>
+#include <set>
 #include <span>
+#include <sys/syscall.h>
+#include <unistd.h>
 #include <vector>
+
+namespace {
+
+std::mutex of_synced;
+std::set<std::string> synced;  // all paths that fsync() made durable
+
+}  // namespace
+
+/// In place of the C library's.
+extern "C" int fsync(int file) {
+  std::array<char, 4096> path{};
+  const std::string link = "/proc/self/fd/" + std::to_string(file);
+  if (::readlink(link.c_str(), path.data(), path.size() - 1) > 0) {
+    const std::scoped_lock lock(of_synced);
+    synced.insert(path.data());
+  }
+  return static_cast<int>(::syscall(SYS_fsync, file));
+}
 
 namespace {
 
@@ -112,6 +135,38 @@ TEST_CASE("a run with two folders goes on with both after a restart from one",
         std::string::npos);
 }
 
+TEST_CASE("two runs that restart from one checkpoint write into folders of their own",
+          "[runtime][checkpoint]") {
+  const tess::test::Scratch scratch;
+  const std::string saved = scratch.path("saved"), beside = scratch.path("beside");
+  Job common{.from = "", .folder = saved, .second = beside};
+  run(common);
+  Job one{.from = saved, .folder = scratch.path("one"), .n_steps = 2};
+  run(one);
+  CHECK(one.refused.empty());
+  Job two{.from = saved, .folder = one.folder};
+  run(two);
+  CHECK(two.refused.find("one/checkpoint-000002 is a checkpoint of another run") !=
+        std::string::npos);
+  CHECK(tess::detail::numbers_in(one.folder) == Numbers{2, 1});
+  Job further{.from = one.folder, .folder = one.folder};
+  run(further);
+  CHECK(further.refused.empty());
+  CHECK(tess::detail::numbers_in(one.folder) == Numbers{3, 2});
+
+  // A folder that the common run began may be gone on with again when a restart was in vain.
+  for (const std::uint64_t number : {2U, 3U}) {
+    Job again{.from = saved, .folder = beside};
+    run(again);
+    CHECK(again.refused.empty());
+    CHECK(tess::detail::numbers_in(beside) == Numbers{number, number - 1});
+    if (number == 2) continue;
+    Job too_late{.from = saved, .folder = beside};
+    run(too_late);
+    CHECK_FALSE(too_late.refused.empty());  // both that are left are of those restarts
+  }
+}
+
 TEST_CASE("a checkpoint that another run writes meanwhile is noticed", "[runtime][checkpoint]") {
   const tess::test::Scratch scratch;
   Job other{.from = "", .folder = scratch.path("other")};
@@ -145,6 +200,26 @@ TEST_CASE("a damaged checkpoint is not one of those that are kept", "[runtime][c
   run(next);
   CHECK(next.step == 3);
   CHECK(tess::detail::numbers_in(folder) == Numbers{4, 2});
+}
+
+TEST_CASE("each folder that is made for a checkpoint is an entry of a folder that is durable",
+          "[runtime][checkpoint]") {
+  const tess::test::Scratch scratch;
+  const fs::path root = fs::canonical(scratch.path(""));
+  for (const char* name : {"a/b/c", "d/e/", "f/../g/./h"}) {
+    CAPTURE(name);
+    const std::string folder = scratch.path(name);
+    synced.clear();
+    Job job{.from = "", .folder = folder};
+    run(job);
+    REQUIRE(job.refused.empty());
+    fs::path at = fs::canonical(tess::latest_checkpoint(folder));
+    CHECK(synced.contains(at / "main.part"));  // its name until it is durable
+    for (; at != root; at = at.parent_path()) {
+      CAPTURE(at);
+      CHECK(synced.contains(at.parent_path()));
+    }
+  }
 }
 
 TEST_CASE("a checksum knows the order of a file's blocks, and the length of the last",

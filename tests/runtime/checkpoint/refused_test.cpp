@@ -9,6 +9,9 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/scratch.hpp"
 
+#include <new>
+#include <stdexcept>
+
 namespace {
 
 class Cell : public tess::Chare<Cell> {
@@ -400,5 +403,99 @@ TEST_CASE("an array that is balanced restarts with a new balancer", "[runtime][c
     auto other = tess::test::adversarial(5, seed);
     REQUIRE(tess::run(other, [&] { return Balanced::restart(scratch.path("saved"), sum); }) == 0);
     CHECK(sum == 45);
+  }
+}
+
+namespace {
+
+enum class Thrown : std::uint8_t { nothing, error, runtime_error, no_memory, number };
+Thrown by_clay = Thrown::nothing, by_state = Thrown::nothing;
+
+/// What a user's serialize() may do where it writes.
+template <class Ar>
+void may_throw(Thrown what, const Ar& /*ar*/) {
+  if (Ar::is_reading) return;
+  if (what == Thrown::error) tess::fail(tess::ErrorCode::bad_value, "the clay is too hard");
+  if (what == Thrown::runtime_error) throw std::runtime_error("the clay is too soft");
+  if (what == Thrown::no_memory) throw std::bad_alloc();
+  if (what == Thrown::number) throw 7;
+}
+
+class Clay : public tess::Chare<Clay> {
+ public:
+  void form() { ++n_; }
+  [[nodiscard]] int formed() const { return n_; }
+  template <class Ar>
+  void serialize(Ar& ar) {
+    if (index().x == 3) may_throw(by_clay, ar);
+    ar(n_);
+  }
+
+ private:
+  int n_ = 0;
+};
+
+struct Pottery {
+  tess::ArrayProxy<Clay> clay;
+  template <class Ar>
+  void serialize(Ar& ar) {
+    may_throw(by_state, ar);
+    ar(clay);
+  }
+
+  /// A checkpoint that fails for each kind of exception, in the elements and in the state; the run
+  /// goes on, and then saves.
+  static tess::Task main(std::string folder, std::vector<std::string>& errors) {
+    Pottery state;
+    state.clay = tess::create<Clay>(tess::range(6));
+    int n_ticks = 0;
+    const tess::Timer ticks = tess::every(std::chrono::milliseconds(1), [&] { ++n_ticks; });
+    for (Thrown* const by : {&by_clay, &by_state}) {
+      for (const Thrown what :
+           {Thrown::error, Thrown::runtime_error, Thrown::no_memory, Thrown::number}) {
+        *by = what;
+        std::string error = "none";
+        try {
+          co_await tess::checkpoint(folder, state);
+        } catch (const tess::Error& wrong) {
+          error = wrong.what();
+        }
+        *by = Thrown::nothing;
+        errors.push_back(error);
+        CHECK(tess::latest_checkpoint(folder).empty());
+        co_await tess::epoch([&] { state.clay.broadcast<&Clay::form>(); });
+        const int before = n_ticks;
+        (void)co_await tess::sleep(std::chrono::seconds(3));
+        CHECK(n_ticks > before);  // timers go on
+      }
+    }
+    ticks.cancel();
+    co_await tess::checkpoint(folder, state);
+    CHECK(!tess::latest_checkpoint(folder).empty());
+    const int formed = co_await state.clay[{3}].ask<&Clay::formed>();
+    CHECK(formed == 8);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("an exception of serialize() is the Error of the checkpoint, and the run goes on",
+          "[runtime][checkpoint]") {
+  for (std::uint64_t seed = 0; seed < 8; ++seed) {
+    CAPTURE(seed);
+    const tess::test::Scratch scratch;
+    std::vector<std::string> errors;
+    auto setup = tess::test::adversarial(3, seed);
+    setup.options.migration_chance = 0;  // a migration would throw, too
+    REQUIRE(tess::run(setup, [&] { return Pottery::main(scratch.path("saved"), errors); }) == 0);
+    REQUIRE(errors.size() == 8);
+    CHECK(errors[0] == "the checkpoint failed: Clay[3]: the clay is too hard");
+    CHECK(errors[1] == "the checkpoint failed: Clay[3]: the clay is too soft");
+    CHECK(errors[2] == "the checkpoint failed: Clay[3]: std::bad_alloc");
+    CHECK(errors[3] == "the checkpoint failed: an exception that is not a std::exception");
+    CHECK(errors[4] == "the clay is too hard");
+    CHECK(errors[5] == scratch.path("saved: the clay is too soft"));
+    CHECK(errors[6] == scratch.path("saved: std::bad_alloc"));
+    CHECK(errors[7] == scratch.path("saved: an exception that is not a std::exception"));
   }
 }

@@ -8,7 +8,10 @@
 #include "tests/support/scratch.hpp"
 
 #include <chrono>
+#include <functional>
 #include <memory>
+#include <set>
+#include <vector>
 
 namespace {
 
@@ -138,5 +141,89 @@ TEST_CASE("timers tick after a restart, and one of the run before names none of 
     const std::string folder = scratch.path("saved");
     run([&] { return begin(folder); }, 1, 4);
     run([&] { return time(folder); }, 2, n_pes);
+  }
+}
+
+namespace {
+
+/// A single chare that reports where it is.
+class Desk : public tess::Chare<Desk> {
+ public:
+  [[nodiscard]] int pe() const { return tess::my_pe().value; }
+  template <class Ar>
+  void serialize(Ar& /*ar*/) {}
+};
+
+struct Desks {
+  static constexpr std::size_t n_anywhere = 20;
+  std::vector<tess::ChareProxy<Desk>> all;
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(all);
+  }
+
+  static Desks make() {
+    Desks desks;
+    for (std::size_t i = 0; i < n_anywhere; ++i) desks.all.push_back(tess::create_one<Desk>());
+    const std::int32_t last = tess::n_pes() - 1;
+    desks.all.push_back(tess::create_one_on<Desk>(tess::PeId{last}));
+    return desks;
+  }
+  tess::Task where(std::vector<int>& places) const {
+    for (const auto& desk : all) {
+      const int pe = co_await desk.ask<&Desk::pe>();
+      places.push_back(pe);
+    }
+  }
+  static tess::Task look(std::vector<int>& places) { co_await make().where(places); }
+  static tess::Task save(std::string folder, std::vector<int>& places) {
+    const Desks desks = make();
+    co_await tess::epoch([&] {
+      desks.all[0].migrate_to(tess::PeId{2});
+      desks.all[1].migrate_to(tess::PeId{0});
+    });
+    co_await desks.where(places);
+    co_await tess::checkpoint(folder, desks);
+  }
+  static tess::Task restart(std::string folder, std::vector<int>& places) {
+    const auto desks = co_await tess::restart<Desks>(folder);
+    co_await desks.where(places);
+    co_await tess::checkpoint(folder, desks);
+  }
+};
+
+/// Where the chares are on a machine on which none migrates by itself.
+std::vector<int> places_on(int n_pes, std::uint64_t seed,
+                           const std::function<tess::Task(std::vector<int>&)>& main) {
+  std::vector<int> places;
+  tess::Setup setup = tess::test::adversarial(n_pes, seed);
+  setup.options.migration_chance = 0;
+  CHECK(tess::run(setup, [&] { return main(places); }) == 0);
+  return places;
+}
+
+}  // namespace
+
+TEST_CASE("single chares are where they were after a restart, or spread as in a new run",
+          "[runtime][checkpoint]") {
+  for (std::uint64_t seed = 0; seed < 8; ++seed) {
+    CAPTURE(seed);
+    const tess::test::Scratch scratch;
+    const std::string folder = scratch.path("saved");
+    const auto restart = [&](std::vector<int>& places) { return Desks::restart(folder, places); };
+    const std::vector<int> saved =
+        places_on(4, seed, [&](auto& places) { return Desks::save(folder, places); });
+    REQUIRE(saved.size() == Desks::n_anywhere + 1);
+    CHECK(saved[0] == 2);
+    CHECK(saved[1] == 0);
+    CHECK(saved.back() == 3);
+    CHECK(places_on(4, seed + 100, restart) == saved);
+    for (const int n_pes : {3, 7, 7}) {  // the last time on as many as before
+      CAPTURE(n_pes);
+      std::vector<int> anew = places_on(n_pes, seed, &Desks::look);
+      CHECK(std::set<int>(anew.begin(), anew.end()).size() > 2);
+      anew.back() = 3 % n_pes;  // of create_one_on()
+      CHECK(places_on(n_pes, seed + 200, restart) == anew);
+    }
   }
 }
