@@ -96,7 +96,7 @@ tess::Task collide_rounds() {
   for (std::size_t round = look.slack > 0 ? 0 : 1; round < 3; ++round) {
     co_await tess::epoch([&] { clients.broadcast<&Client::submit>(collider, round); });
     try {
-      co_await run_collision(collider, report);
+      co_await collider.run(report);
     } catch (const tess::Error& error) {  // voxels that are too small for 32-bit cells
       const std::string_view why = error.what();
       if (size == 0 || (why.find("voxel size") == why.npos && why.find("voxel grid") == why.npos))
@@ -105,7 +105,7 @@ tess::Task collide_rounds() {
     }
     // Ends all voxels; the next collision makes them again.
     if (look.seed % 3 == 1)
-      for (int call = 0; call < 2; ++call) co_await tess::epoch([&] { retire(collider); });
+      for (int call = 0; call < 2; ++call) co_await tess::epoch([&] { collider.retire(); });
   }
   co_await tess::epoch([&] {
     collider.destroy();

@@ -68,7 +68,7 @@ Reports oracle(const Scene& scene, PairRules rules, std::optional<ModelId> only)
   return test::all_reports(all, rules, only);
 }
 
-/// The arguments of run_collision().
+/// A collider, and the arguments of its run().
 struct Collision {
   Collider collider;
   Report report;
@@ -101,7 +101,7 @@ class Client : public Chare<Client, Index1> {
     test::add(reported_, hits);
   }
   Task collide(Collision collision) {
-    co_await run_collision(collision.collider, collision.report, collision.taken);
+    co_await collision.collider.run(collision.report, collision.taken);
   }
   /// Starts a collision per round when the objects of the one before are taken.
   Task collide_in_a_row(Collision collision, Scene scene) {
@@ -182,7 +182,7 @@ Task collide_rounds(Problem& problem) {
   Scene scene = problem.scene;
   for (scene.round = 0; scene.round < kRounds; ++scene.round) {
     co_await epoch([&] { fixture.submit(scene); });
-    co_await run_collision(fixture.collider, fixture.report);
+    co_await fixture.collider.run(fixture.report);
     co_await gather(fixture, problem);
   }
   co_await epoch([&] {
@@ -200,7 +200,7 @@ Task collide_early(Problem& problem) {
     fixture.collider = make_collider(problem.options);
     fixture.clients.broadcast<&Client::submit_early>(fixture.collider, problem.scene);
   });
-  co_await run_collision(fixture.collider, fixture.report);
+  co_await fixture.collider.run(fixture.report);
   co_await gather(fixture, problem);
 }
 
@@ -209,7 +209,7 @@ Task collide_bad(Problem& problem) {
   co_await set_up(problem, fixture);
   co_await epoch(
       [&] { fixture.clients.broadcast<&Client::submit_bad>(fixture.collider, problem.scene); });
-  co_await run_collision(fixture.collider, fixture.report);
+  co_await fixture.collider.run(fixture.report);
   problem.n_refused = co_await fixture.clients.reduce<&Client::count_refused>();
   co_await gather(fixture, problem);
 }
@@ -252,10 +252,9 @@ Task collide_apart(Problem& problem) {
     if (sent == &problem.n_sent_of_two_models)
       fixture.collider.submit(
           Objects{owner_of(Index1{0}), ModelId{7}, std::array{far_box, far_box}});
-    co_await run_collision(fixture.collider, fixture.report);
-    Future<CollisionStatistics> done;
-    report_statistics(fixture.collider, done.callback());
-    *sent = static_cast<std::int64_t>((co_await done).n_entries);
+    co_await fixture.collider.run(fixture.report);
+    const CollisionStatistics statistics = co_await fixture.collider.statistics();
+    *sent = static_cast<std::int64_t>(statistics.n_entries);
   }
   co_await gather(fixture, problem);
 }
@@ -265,11 +264,11 @@ Task collide_refused(Problem& problem) {
   co_await set_up(problem, fixture);
   co_await epoch([&] { fixture.submit(problem.scene); });
   try {
-    co_await run_collision(fixture.collider, fixture.report);
+    co_await fixture.collider.run(fixture.report);
   } catch (const Error& error) {
     problem.error = error.what();
   }
-  co_await run_collision(fixture.collider, fixture.report);  // nothing is submitted
+  co_await fixture.collider.run(fixture.report);  // nothing is submitted
   co_await gather(fixture, problem);
 }
 

@@ -56,12 +56,10 @@ tess::Task ParallelCollisions::step(int step, int repeat, StepResult& result,
     if (run > 0) co_await tess::epoch([&] { clients_.broadcast<&Client::forget>(); });
     const tess::Time begin = tess::now();
     co_await tess::epoch([&] { clients_.broadcast<&Client::submit>(collider_); });
-    co_await run_collision(collider_, report);
+    co_await collider_.run(report);
     const double seconds = tess::seconds(tess::now() - begin);
     result.seconds = run == 0 ? seconds : std::min(result.seconds, seconds);
-    tess::Future<CollisionStatistics> done;
-    report_statistics(collider_, done.callback());
-    const CollisionStatistics statistics = co_await done;
+    const CollisionStatistics statistics = co_await collider_.statistics();
     result.n_kept = statistics.n_kept;
     result.searched = statistics.searched;
     if (result.searched) last_ = statistics;

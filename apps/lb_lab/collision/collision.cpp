@@ -32,12 +32,12 @@ class Collision final : public Stepped {
   tess::Task step(std::int32_t iteration) override {
     co_await tess::epoch([&] { owners_.broadcast<&Owner::submit>(collider_, iteration); });
     const tess::collide::Report report = report_to(owners_, stations_);
-    co_await tess::collide::run_collision(collider_, report);
+    co_await collider_.run(report);
   }
   tess::Task end() override {
     co_await tess::epoch([this] { owners_.broadcast<&Owner::end>(); });
     // Idle for two calls: every voxel ends.
-    for (int i = 0; i < 2; ++i) co_await tess::epoch([this] { tess::collide::retire(collider_); });
+    for (int i = 0; i < 2; ++i) co_await tess::epoch([this] { collider_.retire(); });
   }
 
  private:

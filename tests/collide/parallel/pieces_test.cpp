@@ -112,13 +112,11 @@ Task collide_needles(NeedleScene setting, NeedlePairs& outcome) {
   });
   co_await epoch([&] { clients.broadcast<&NeedleOwner::submit>(collider); });
   const Report report{report_to<&NeedleOwner::receive>(clients), {}, Receivers::one_owner};
-  co_await run_collision(collider, report);
+  co_await collider.run(report);
   outcome.pairs = co_await clients.reduce<&NeedleOwner::give_pairs>();
   std::sort(outcome.pairs.begin(), outcome.pairs.end());
   outcome.n_hits = co_await clients.reduce<&NeedleOwner::give_hits>();
-  Future<CollisionStatistics> statistics;
-  report_statistics(collider, statistics.callback());
-  outcome.statistics = co_await statistics;
+  outcome.statistics = co_await collider.statistics();
 }
 
 NeedlePairs outcome_of(const NeedleScene& setting, const test::Machine& machine) {
@@ -241,7 +239,7 @@ std::int64_t n_received(const TwoObjects& objects, const ColliderOptions& option
     });
     co_await epoch([&] { owners.broadcast<&OwnerOfOne::submit>(collider, objects); });
     const Report report{report_to<&OwnerOfOne::receive>(owners), {}};
-    co_await run_collision(collider, report);
+    co_await collider.run(report);
     n = co_await owners.reduce<&OwnerOfOne::give>();
   };
   test::Machine{.pes = 2, .per_process = 1, .seed = 3}.run(program).require_success();

@@ -54,7 +54,7 @@ unsigned long long n_sent(std::int32_t n_houses, std::int32_t n_collisions) {
     const Report report{report_to<&Street::receive>(streets), {}, Receivers::one_owner};
     for (std::int32_t i = 0; i < n_collisions; ++i) {
       co_await epoch([&] { streets.broadcast<&Street::submit>(collider, n_houses); });
-      co_await run_collision(collider, report);
+      co_await collider.run(report);
     }
     n_pairs = co_await streets.reduce<&Street::count>();
   };

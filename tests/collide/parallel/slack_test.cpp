@@ -111,7 +111,7 @@ class Mover : public Chare<Mover> {
   }
   void give_refused(Callback<std::string> target) { contribute(max, refused_, std::move(target)); }
   Task collide(Collider collider, Report report, Callback<void> taken) {
-    co_await run_collision(collider, report, taken);
+    co_await collider.run(report, taken);
   }
   /// The boxes of a step are submitted as soon as those of the one before are taken.
   Task collide_in_a_row(Collider collider, Report report, std::int32_t n_steps) {
@@ -179,11 +179,9 @@ Task collide_steps(const Moving& scene, std::int32_t n_steps, Outcome& outcome) 
   co_await begin(scene, with_slack(scene), movers);
   for (std::int32_t step = 0; step < n_steps; ++step) {
     co_await epoch([&] { movers.clients.broadcast<&Mover::submit>(movers.collider, step); });
-    co_await run_collision(movers.collider, movers.report);
+    co_await movers.collider.run(movers.report);
     co_await give_all(movers, outcome);
-    Future<CollisionStatistics> statistics;
-    report_statistics(movers.collider, statistics.callback());
-    outcome.statistics.push_back(co_await statistics);
+    outcome.statistics.push_back(co_await movers.collider.statistics());
   }
   co_await end(movers, outcome);
 }
@@ -208,8 +206,8 @@ Task collide_two_at_once(const std::array<Moving, 2>& scenes, std::int32_t n_ste
     co_await epoch([&] {
       for (const Movers& one : movers) one.clients.broadcast<&Mover::submit>(one.collider, step);
     });
-    Task first = run_collision(movers[0].collider, movers[0].report);
-    Task second = run_collision(movers[1].collider, movers[1].report);
+    Task first = movers[0].collider.run(movers[0].report);
+    Task second = movers[1].collider.run(movers[1].report);
     Task round = voxels.round();
     co_await first;
     co_await second;
@@ -426,12 +424,12 @@ TEST_CASE("colliders with a slack refuse capsules and coordinates without a cell
       error.clear();
       co_await epoch([&] { movers.clients.broadcast<&Mover::submit>(movers.collider, 0); });
       try {
-        co_await run_collision(movers.collider, movers.report);
+        co_await movers.collider.run(movers.report);
       } catch (const Error& caught) {
         error = caught.what();
       }
     }
-    co_await run_collision(movers.collider, movers.report);  // of nothing
+    co_await movers.collider.run(movers.report);  // of nothing
     co_await give_all(movers, after);
     co_await end(movers, after);
   };
