@@ -12,8 +12,8 @@
 namespace tess::collide {
 
 Collider make_collider(const ColliderOptions& options) {
-  if (options.size != Point{0, 0, 0})
-    static_cast<void>(VoxelGrid(options.origin, options.size));  // throws
+  if (options.voxel_size != Point{0, 0, 0})
+    static_cast<void>(VoxelGrid(options.origin, options.voxel_size));  // throws
   if (!(options.piece_length >= 0))
     fail(ErrorCode::bad_argument, "make_collider() with pieces of length ", options.piece_length,
          ": give a positive length, infinity for whole objects, or 0 to have it chosen");
@@ -63,7 +63,7 @@ Manager& remaining(const Collider& collider) {
 }
 
 std::size_t n_sampled(const Collider& collider) {
-  return n_sampled_per_pe(collider.options.size, n_pes());
+  return n_sampled_per_pe(collider.options.voxel_size, n_pes());
 }
 
 }  // namespace

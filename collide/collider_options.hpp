@@ -11,9 +11,10 @@ namespace tess::collide {
 
 /// The voxels, and the pairs that are hits.
 struct ColliderOptions {
-  Point origin{0, 0, 0};
-  /// Of the smallest voxels. Zero: chosen in each collision by expected cost, with an origin.
-  Point size{0, 0, 0};
+  Point origin{0, 0, 0};  ///< a lower corner of a voxel, if their size is given
+  /// The edges of the smallest voxels. Zero: chosen in each collision by expected cost, with an
+  /// origin.
+  Point voxel_size{0, 0, 0};
   PairRules rules{};
   /// Of objects with capsules. Infinite: they are whole. Zero: chosen in each collision by expected
   /// cost, with the size of the voxels; whole if that is given.

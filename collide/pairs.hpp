@@ -24,6 +24,7 @@
 #pragma once
 
 #include "collide/capsule.hpp"
+#include "collide/hit.hpp"
 #include "runtime/core/algorithm.hpp"
 
 #include <concepts>
@@ -64,11 +65,10 @@ struct PairStatistics {
 
 struct PairOptions {
   Touching touching = Touching::counts;
-  /// One model per object, for searches within one set only; pairs within a model are not tested.
-  /// Empty: all pairs are tested.
+  /// One model per object, for searches within one set only. Empty: all pairs are tested.
   std::span<const std::uint32_t> models = {};
-  bool within_model = false;  ///< with models: tests pairs within a model, too
-  double voxel_size = 0;      ///< positive and finite; or 0: chosen by expected cost
+  WithinModel within_model = WithinModel::skip;  ///< without effect if there are no models
+  double voxel_size = 0;  ///< positive and finite; or 0: chosen by expected cost
   PairMethod method = PairMethod::automatic;
   PairStatistics* statistics = nullptr;  ///< is filled
 };

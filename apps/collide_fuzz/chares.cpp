@@ -81,11 +81,10 @@ class Client : public tess::Chare<Client, tess::Index1> {
 tess::Task collide_rounds() {
   const Look& look = problem->look;
   const double size = look.voxel_size;
-  const ColliderOptions options{
-      .size = {size, size, size},
-      .rules = {look.touching, look.within_model ? WithinModel::test : WithinModel::skip},
-      .piece_length = look.piece_length,
-      .slack = look.slack};
+  const ColliderOptions options{.voxel_size = {size, size, size},
+                                .rules = {look.touching, look.within_model},
+                                .piece_length = look.piece_length,
+                                .slack = look.slack};
   Collider collider;
   tess::ArrayProxy<Client> clients;
   co_await tess::epoch([&] {
@@ -120,7 +119,7 @@ PairList expected(const Objects& scene, const Problem& p) {
   for (std::uint32_t i = 0; i < scene.boxes.size(); ++i)
     for (std::uint32_t j = i + 1; j < scene.boxes.size(); ++j) {
       const ModelId a{scene.models[i]}, b{scene.models[j]};
-      if ((!p.look.within_model && a == b) || !scene.are_pair(i, j)) continue;
+      if ((p.look.within_model == WithinModel::skip && a == b) || !scene.are_pair(i, j)) continue;
       const bool to_a = !p.only || a == *p.only, to_b = !p.only || b == *p.only;
       if (to_a) out.push_back({i, j});
       if (to_b && !(to_a && Client::owner(i) == Client::owner(j))) out.push_back({j, i});

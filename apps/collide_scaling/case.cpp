@@ -77,7 +77,7 @@ tess::Task run_steps(const Case& given, Row& row) {
   tess::GroupProxy<Client> clients;
   const double size = given.voxel_size / std::sqrt(given.thinned);
   co_await tess::epoch([&] {
-    collider = make_collider({.size = {size, size, size}});
+    collider = make_collider({.voxel_size = {size, size, size}});
     clients = tess::create_group<Client>(given);
   });
   tess::BalancerProxy balancer;

@@ -197,7 +197,7 @@ struct Models {
 };
 /// Whether models leave pairs out.
 bool divides(const PairOptions& options) {
-  return !options.models.empty() && !options.within_model;
+  return !options.models.empty() && options.within_model == WithinModel::skip;
 }
 Models count(std::span<const std::uint32_t> models) {
   Models out{models.empty() ? 0 : 1, 0};

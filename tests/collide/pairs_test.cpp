@@ -69,7 +69,8 @@ std::vector<Pair> expected(const Scene<Real, D>& scene, const PairOptions& optio
   std::vector<Pair> out;
   for (std::uint32_t i = 0; i < scene.boxes.size(); ++i)
     for (std::uint32_t j = i + 1; j < scene.boxes.size(); ++j)
-      if ((options.models.empty() || options.within_model || scene.models[i] != scene.models[j]) &&
+      if ((options.models.empty() || options.within_model == WithinModel::test ||
+           scene.models[i] != scene.models[j]) &&
           overlap(scene.boxes[i], scene.boxes[j], options.touching))
         out.push_back({i, j});
   return out;
@@ -100,13 +101,13 @@ void check(const Scene<Real, D>& scene, std::initializer_list<double> sizes) {
       for (const double size : sizes) {
         CAPTURE(static_cast<int>(touching), static_cast<int>(method), size, D, sizeof(Real));
         PairStatistics statistics;
-        PairOptions options{touching, {}, false, size, method, &statistics};
+        PairOptions options{touching, {}, WithinModel::skip, size, method, &statistics};
         const std::vector<Pair> found = sorted(pairs(boxes, options));
         REQUIRE((found == expected(scene, options)));
         REQUIRE(statistics.n_pairs == found.size());
         options.models = scene.models;
         REQUIRE((sorted(pairs(boxes, options)) == expected(scene, options)));
-        options.within_model = true;
+        options.within_model = WithinModel::test;
         REQUIRE(count_pairs(boxes, options) == found.size());
         const auto a = boxes.first(boxes.size() / 3), b = boxes.subspan(boxes.size() / 3);
         REQUIRE((sorted(pairs(a, b, options)) == expected_of_sets(a, b, touching)));
@@ -311,7 +312,7 @@ TEST_CASE("one model alone is left out; identical boxes make n^2 pairs in bounde
   PairOptions options{.models = models, .statistics = &statistics};
   REQUIRE(count_pairs(std::span(boxes), options) == 0);
   REQUIRE(statistics.n_left_out == 3000);
-  options.within_model = true;
+  options.within_model = WithinModel::test;
   REQUIRE(count_pairs(std::span(boxes), options) == 3000U * 2999 / 2);
   REQUIRE(statistics.bytes < 200 * boxes.size());
 }

@@ -302,10 +302,10 @@ Problem problem_of(std::uint64_t seed) {
   const double size = std::array{0.25, 0.5, 0.7, 1.3, 10.0, 1e-3}[seed % 6];
   problem.options.origin = {seed % 4 == 0 ? 0 : 0.1, 0, -0.3};
   if (seed % 3 == 0) {  // chosen; the scene has a few large boxes
-    problem.options.size = {0, 0, 0};
+    problem.options.voxel_size = {0, 0, 0};
     problem.scene.n_large = static_cast<std::int32_t>(seed % 4);
   } else {
-    problem.options.size = {size, size, 2 * size};
+    problem.options.voxel_size = {size, size, 2 * size};
   }
   problem.options.rules.touching = seed % 11 < 7 ? Touching::counts : Touching::does_not_count;
   problem.options.rules.within_model =
@@ -399,7 +399,7 @@ TEST_CASE("nothing is sent for one model, and voxels of one model alone are not 
   for (const std::string option : {"--pes=1", "--pes=2", "--sim=pes=3,cost=100ns,seed=5"}) {
     Problem problem;
     problem.scene = {.seed = 4, .n_clients = 3, .n_boxes = 40, .n_models = 1};
-    problem.options.size = {1, 1, 1};
+    problem.options.voxel_size = {1, 1, 1};
     CAPTURE(option);
     REQUIRE(run_with(option, problem, &collide_apart) == 0);
     REQUIRE(problem.n_sent_of_one_model == 0);
@@ -414,7 +414,7 @@ TEST_CASE("voxels too small for 32-bit cells are refused, and the collider goes 
   for (const std::string option : {"--pes=2", "--sim=pes=3,cost=100ns,seed=5"}) {
     Problem problem;
     problem.scene = {.seed = 3, .n_clients = 3, .n_boxes = 40, .n_models = 2};
-    problem.options.size = {1e-10, 1e-10, 1e-10};
+    problem.options.voxel_size = {1e-10, 1e-10, 1e-10};
     CAPTURE(option);
     REQUIRE(run_with(option, problem, &collide_refused) == 0);
     REQUIRE_THAT(problem.error, Catch::Contains("has no 32-bit cell at voxel size 1e-10"));

@@ -9,6 +9,8 @@
 namespace collide_scene {
 namespace {
 
+using tess::collide::WithinModel;
+
 double ns_per_object(const Report& report) {
   return report.n_objects == 0
              ? 0
@@ -31,9 +33,9 @@ std::string pairs_in_words(const Report& report) {
                      : report.n_triangles > 0 ? "boxes of triangles that overlap"
                                               : "boxes that overlap",
                      rules.open ? " (touching does not count)" : "",
-                     report.n_models == 0 ? "no models"
-                     : rules.within_model ? "between and within models"
-                                          : "between models");
+                     report.n_models == 0                      ? "no models"
+                     : rules.within_model == WithinModel::test ? "between and within models"
+                                                               : "between models");
 }
 
 std::string slack_in_words(const RunResult& result) {
@@ -64,13 +66,13 @@ std::string explanation(const Report& report) {
                    : rules.triangles ? "used if most triangles are long and thin: pairs whose "
                                        "capsules are apart are not tested"
                                      : "left out: boxes that overlap are pairs");
-  line("models",
-       report.n_models == 0
-           ? "left out: every pair counts"
-           : fmt::format("{}: {}", report.n_models,
-                         rules.within_model ? "no voxel is left out"
-                                            : "voxels that one model alone touches are left out"));
-  if (report.n_models == 1 && !rules.within_model)
+  line("models", report.n_models == 0
+                     ? "left out: every pair counts"
+                     : fmt::format("{}: {}", report.n_models,
+                                   rules.within_model == WithinModel::test
+                                       ? "no voxel is left out"
+                                       : "voxels that one model alone touches are left out"));
+  if (report.n_models == 1 && rules.within_model == WithinModel::skip)
     line("", "one model has no pairs: --self tests pairs within it");
   line("voxel size", rules.voxel_size > 0 ? fmt::format("{} (--voxel-size)", rules.voxel_size)
                                           : "chosen from the objects");
@@ -93,7 +95,7 @@ std::string table(const Report& report) {
   };
   line("machine", report.on_chares ? report.machine : "one thread, without the runtime");
   line("pairs", pairs_in_words(report));
-  if (report.n_models == 1 && !report.options.rules.within_model)
+  if (report.n_models == 1 && report.options.rules.within_model == WithinModel::skip)
     line("", "there is one model, so there are no pairs; --self finds those within it");
   line("grid",
        fmt::format("voxel size {}, {} levels, {} voxels, {} entries, {} objects left out",

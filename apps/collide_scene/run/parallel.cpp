@@ -22,12 +22,11 @@ ParallelCollisions::ParallelCollisions(const Scene& scene, const Rules& rules)
     : scene_(scene), rules_(rules) {}
 
 tess::Task ParallelCollisions::begin() {
-  const PairRules pair_rules{
-      rules_.open ? Touching::does_not_count : Touching::counts,
-      scene_.models.empty() || rules_.within_model ? WithinModel::test : WithinModel::skip};
+  const PairRules pair_rules{rules_.open ? Touching::does_not_count : Touching::counts,
+                             scene_.models.empty() ? WithinModel::test : rules_.within_model};
   const double size = rules_.voxel_size;  // zero: chosen
   const ColliderOptions options{
-      .size = {size, size, size}, .rules = pair_rules, .slack = rules_.slack};
+      .voxel_size = {size, size, size}, .rules = pair_rules, .slack = rules_.slack};
   co_await tess::epoch([&] {
     collider_ = make_collider(options);
     clients_ = tess::create<Client>(tess::range(tess::n_pes()));

@@ -22,7 +22,7 @@ class Collision final : public Stepped {
     const double columns = domain.columns, rows = domain.rows;
     // Two deep: all boxes are in one layer.
     collider_ = tess::collide::make_collider(
-        {.size = {domain.width / columns, domain.height / rows, 2}, .rules = pair_rules});
+        {.voxel_size = {domain.width / columns, domain.height / rows, 2}, .rules = pair_rules});
     const std::int32_t n = owners_a_pe * tess::n_pes();
     owners_ = tess::create<Owner>(tess::range(n), stations_, n);
     return balances(experiment_) ? start_balancing(collider_.voxels, experiment_, outcome_)

@@ -57,7 +57,7 @@ std::vector<std::int64_t> received(const std::string& option, Receivers receiver
     Collider collider;
     ArrayProxy<Row> rows;
     co_await epoch([&] {
-      collider = make_collider({.size = {4, 4, 4}});
+      collider = make_collider({.voxel_size = {4, 4, 4}});
       rows = create<Row>(range(2));
     });
     co_await epoch([&] { rows.broadcast<&Row::submit>(collider, n_each); });

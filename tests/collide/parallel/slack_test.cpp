@@ -171,7 +171,7 @@ Task end(const Movers& movers, Outcome& outcome) {
 
 ColliderOptions with_slack(const Moving& scene) {
   const double size = scene.voxel_size;
-  return {.size = {size, size, size}, .rules = scene.rules, .slack = slack * scene.scale};
+  return {.voxel_size = {size, size, size}, .rules = scene.rules, .slack = slack * scene.scale};
 }
 
 Task collide_steps(const Moving& scene, std::int32_t n_steps, Outcome& outcome) {
@@ -418,7 +418,7 @@ TEST_CASE("colliders with a slack refuse capsules and coordinates without a cell
   const auto refused_and_again = [&]() -> Task {
     Movers movers;
     ColliderOptions options = with_slack(scene);
-    options.size = {1e-10, 1e-10, 1e-10};
+    options.voxel_size = {1e-10, 1e-10, 1e-10};
     co_await begin(scene, options, movers);
     for (int i = 0; i < 2; ++i) {
       error.clear();
