@@ -24,6 +24,7 @@
 #pragma once
 
 #include "collide/capsule.hpp"
+#include "collide/grid_counts.hpp"
 #include "collide/hit.hpp"
 #include "runtime/core/algorithm.hpp"
 
@@ -51,11 +52,7 @@ enum class PairMethod { automatic, all_pairs, sweep, bisection };
 
 /// What a search did.
 struct PairStatistics {
-  double voxel_size = 0;         ///< the longest edge; of the level with the smallest voxels
-  std::uint64_t n_levels = 0;    ///< grids for objects of different sizes
-  std::uint64_t n_voxels = 0;    ///< that were searched
-  std::uint64_t n_entries = 0;   ///< objects in voxels: an object counts in each that it touches
-  std::uint64_t n_left_out = 0;  ///< of them, in voxels that only one model touches
+  GridCounts grid;
   /// Pairs whose boxes overlap. If long thin objects are searched in pieces, these are pairs of
   /// pieces.
   std::uint64_t n_candidates = 0;

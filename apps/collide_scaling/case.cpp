@@ -100,8 +100,8 @@ tess::Task run_steps(const Case& given, Row& row) {
     }
   }
   const CollisionStatistics statistics = co_await collider.statistics();
-  row.voxel_size = statistics.voxel_size;
-  row.n_voxels = statistics.n_voxels;
+  row.voxel_size = statistics.grid.voxel_size;
+  row.n_voxels = statistics.grid.n_voxels;
   if (is_balanced)
     for (const tess::balance::Round& round : balancer.history()) {
       row.n_moves += round.n_moved;

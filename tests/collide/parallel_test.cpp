@@ -148,6 +148,7 @@ struct Problem {
   std::vector<Reports> rounds;  ///< the reports of each collision
   std::int64_t n_refused = 0;
   std::int64_t n_sent_of_one_model = -1, n_sent_of_two_models = -1;
+  GridCounts grid;
   std::string error;
   std::size_t n_left = 0;  ///< collections on PE 0 after all are destroyed
 };
@@ -253,10 +254,23 @@ Task collide_apart(Problem& problem) {
       fixture.collider.submit(
           Objects{owner_of(Index1{0}), ModelId{7}, std::array{far_box, far_box}});
     co_await fixture.collider.run(fixture.report);
-    const CollisionStatistics statistics = co_await fixture.collider.statistics();
-    *sent = static_cast<std::int64_t>(statistics.n_entries);
+    const GridCounts grid = (co_await fixture.collider.statistics()).grid;
+    *sent = static_cast<std::int64_t>(grid.n_entries - grid.n_left_out);
   }
   co_await gather(fixture, problem);
+}
+
+/// Along x the voxels 0, 3 and 6 have two boxes each, and the last box is in voxel 7, too.
+Task count_grid(Problem& problem) {
+  const std::array of_model_0{Aabb{{0, 0, 0}, {0.25, 1, 1}}, Aabb{{3.25, 0, 0}, {3.5, 1, 1}},
+                              Aabb{{3.5, 0, 0}, {3.75, 1, 1}}, Aabb{{6.25, 0, 0}, {6.5, 1, 1}}};
+  const std::array of_model_1{Aabb{{0.5, 0, 0}, {0.75, 1, 1}}, Aabb{{6.5, 0, 0}, {7.5, 1, 1}}};
+  Fixture fixture;
+  co_await set_up(problem, fixture);
+  fixture.collider.submit(Objects{owner_of(Index1{0}), ModelId{0}, of_model_0});
+  fixture.collider.submit(Objects{owner_of(Index1{0}), ModelId{1}, of_model_1, LocalId{4}});
+  co_await fixture.collider.run(fixture.report);
+  problem.grid = (co_await fixture.collider.statistics()).grid;
 }
 
 Task collide_refused(Problem& problem) {
@@ -406,6 +420,22 @@ TEST_CASE("nothing is sent for one model, and voxels of one model alone are not 
     // Two far objects of another model: their voxel and the others are left out.
     REQUIRE(problem.n_sent_of_two_models == 0);
     REQUIRE(problem.rounds.front().empty());
+  }
+}
+
+TEST_CASE("a collision counts the voxels and the objects in them as a serial search does",
+          "[collide][parallel]") {
+  for (const WithinModel within : {WithinModel::skip, WithinModel::test}) {
+    Problem problem;
+    problem.scene.n_clients = 1;
+    problem.options.voxel_size = {1, 2, 3};
+    problem.options.rules.within_model = within;
+    REQUIRE(run_with("--sim=pes=3,cost=100ns,seed=5", problem, &count_grid) == 0);
+    CHECK(problem.grid.voxel_size == 3);
+    CHECK(problem.grid.n_levels == 1);
+    CHECK(problem.grid.n_voxels == (within == WithinModel::skip ? 2 : 3));
+    CHECK(problem.grid.n_entries == 7);
+    CHECK(problem.grid.n_left_out == (within == WithinModel::skip ? 3 : 1));
   }
 }
 

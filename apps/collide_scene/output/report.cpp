@@ -18,8 +18,8 @@ double ns_per_object(const Report& report) {
 }
 
 template <class T>
-std::string or_unknown(const std::optional<T>& value) {
-  return value ? fmt::format("{:.6g}", static_cast<double>(*value)) : "-";
+std::string number(T value) {
+  return fmt::format("{:.6g}", static_cast<double>(value));
 }
 
 const char* kind_of_objects(const Report& report) {
@@ -89,6 +89,7 @@ std::string explanation(const Report& report) {
 std::string table(const Report& report) {
   const RunResult& result = report.result;
   const GridReport& grid = result.grid;
+  const tess::collide::GridCounts& counts = grid.counts;
   std::string out = report.scene + "\n";
   const auto line = [&out](const char* name, const std::string& value) {
     out += fmt::format("  {:<10} {}\n", name, value);
@@ -99,8 +100,8 @@ std::string table(const Report& report) {
     line("", "there is one model, so there are no pairs; --self finds those within it");
   line("grid",
        fmt::format("voxel size {}, {} levels, {} voxels, {} entries, {} objects left out",
-                   or_unknown(grid.voxel_size), or_unknown(grid.levels), or_unknown(grid.voxels),
-                   or_unknown(grid.entries), or_unknown(grid.left_out)));
+                   number(counts.voxel_size), number(counts.n_levels), number(counts.n_voxels),
+                   number(counts.n_entries), number(counts.n_left_out)));
   if (grid.pieces.value_or(0) != 0)
     line("", *grid.pieces == report.n_objects
                  ? "long thin triangles, whole, by their capsules"
@@ -150,11 +151,12 @@ std::string json(const Report& report) {
   out["pairs"] = total.n_pairs;
   out["candidates"] = total.n_candidates;
   set("false_positive_rate", report.false_positive_rate);
-  set("voxel_size", result.grid.voxel_size);
-  set("levels", result.grid.levels);
-  set("voxels", result.grid.voxels);
-  set("entries", result.grid.entries);
-  set("left_out", result.grid.left_out);
+  const tess::collide::GridCounts& grid = result.grid.counts;
+  out["voxel_size"] = grid.voxel_size;
+  out["levels"] = grid.n_levels;
+  out["voxels"] = grid.n_voxels;
+  out["entries"] = grid.n_entries;
+  out["left_out"] = grid.n_left_out;
   set("pieces", result.grid.pieces);
   set("grid_bytes", result.grid.bytes);
   out["slack"] = report.options.rules.slack;

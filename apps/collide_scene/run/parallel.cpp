@@ -69,11 +69,7 @@ tess::Task ParallelCollisions::step(int step, int repeat, StepResult& result,
 }
 
 tess::Task ParallelCollisions::end(RunResult& result) {
-  result.grid.voxel_size = last_.voxel_size;
-  result.grid.levels = last_.n_levels;
-  result.grid.voxels = last_.n_voxels;
-  result.grid.entries = last_.n_entries;
-  result.grid.left_out = last_.n_left_out;
+  result.grid.counts = last_.grid;
   result.grid.pieces = last_.n_pieces;
   result.peak_memory_bytes = co_await clients_.reduce<&Client::give_memory>();
   co_await tess::epoch([&] {

@@ -68,8 +68,8 @@ TEST_CASE("a voxel on chares has enough objects to be worth its messages", "[col
   PairStatistics serial;
   (void)count_pairs(std::span<const Aabb>(sheet(512)), {.statistics = &serial});
   const double n = objects_per_voxel(512, 1);
-  CAPTURE(serial.voxel_size);
-  CHECK(n > 1.5 * serial.voxel_size * serial.voxel_size);
+  CAPTURE(serial.grid.voxel_size);
+  CHECK(n > 1.5 * serial.grid.voxel_size * serial.grid.voxel_size);
   CHECK(n < 1024);
 }
 
