@@ -4,6 +4,7 @@
 // numbers are finite, and lo <= hi on each axis (is_valid()).
 #pragma once
 
+#include "collide/point.hpp"
 #include "runtime/core/algorithm.hpp"
 
 #include <array>
@@ -12,8 +13,6 @@
 #include <span>
 
 namespace tess::collide {
-
-using Point = std::array<double, 3>;
 
 /// Whether boxes that share only a face, an edge or a corner overlap.
 enum class Touching { counts, does_not_count };

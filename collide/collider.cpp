@@ -12,8 +12,8 @@
 namespace tess::collide {
 
 Collider make_collider(const ColliderOptions& options) {
-  if (options.size != Point{0, 0, 0})
-    static_cast<void>(VoxelGrid(options.origin, options.size));  // throws
+  if (options.voxel_size != Point{0, 0, 0})
+    static_cast<void>(VoxelGrid(options.origin, options.voxel_size));  // throws
   if (!(options.piece_length >= 0))
     fail(ErrorCode::bad_argument, "make_collider() with pieces of length ", options.piece_length,
          ": give a positive length, infinity for whole objects, or 0 to have it chosen");
@@ -52,9 +52,8 @@ void submit_early_to(const GroupProxy<G>& group, Submission&& objects) {
 }
 
 void check_not_destroyed_early(bool is_right) {
-  TESS_CHECK(
-      is_right,
-      "a collider is destroyed while a collision of it runs: co_await run_collision() first");
+  TESS_CHECK(is_right,
+             "a collider is destroyed while a collision of it runs: co_await its run() first");
 }
 
 Manager& remaining(const Collider& collider) {
@@ -64,7 +63,7 @@ Manager& remaining(const Collider& collider) {
 }
 
 std::size_t n_sampled(const Collider& collider) {
-  return n_sampled_per_pe(collider.options.size, n_pes());
+  return n_sampled_per_pe(collider.options.voxel_size, n_pes());
 }
 
 }  // namespace
@@ -148,12 +147,11 @@ Task collide_with_slack(Collider collider, std::uint64_t step, Report report,
   co_await epoch(body);
 }
 
-}  // namespace
-
-Task run_collision(Collider collider, Report report, Callback<void> taken) {
+/// Has a collider of its own, which outlives the handle that run() is called on.
+Task collide_once(Collider collider, Report report, Callback<void> taken) {
   if (!report.call)
     fail(ErrorCode::bad_argument,
-         "run_collision() with a report that nothing receives: its hits would be lost; give it "
+         "Collider::run() with a report that nothing receives: its hits would be lost; give it "
          "report_to<&Client::receive>(clients)");
   const std::uint64_t step = collider.managers.local().new_step();
   if (collider.options.slack > 0) {
@@ -175,14 +173,20 @@ Task run_collision(Collider collider, Report report, Callback<void> taken) {
   co_await collide_taken(collider, step, summary, report);
 }
 
-void report_statistics(const Collider& collider, const Callback<CollisionStatistics>& target) {
-  collider.managers.broadcast<&Manager::report_last>(target);
+}  // namespace
+
+Task Collider::run(Report report, Callback<void> taken) const {
+  return collide_once(*this, std::move(report), std::move(taken));
 }
 
-void retire(const Collider& collider) {
-  collider.voxels.broadcast<&Voxel::retire>();
-  collider.managers.broadcast<&Manager::shrink>();
-  if (collider.options.slack > 0) collider.neighbours.broadcast<&Neighbours::forget>();
+Future<CollisionStatistics> Collider::statistics() const {
+  return managers.reduce<&Manager::report_last>();
+}
+
+void Collider::retire() const {
+  voxels.broadcast<&Voxel::retire>();
+  managers.broadcast<&Manager::shrink>();
+  if (options.slack > 0) neighbours.broadcast<&Neighbours::forget>();
 }
 
 }  // namespace tess::collide

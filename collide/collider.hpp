@@ -15,16 +15,16 @@
 //     const auto clients = tess::create<Client>(tess::range(8));
 //     co_await tess::epoch([&] { clients.broadcast<&Client::submit>(collider); });
 //     const tess::collide::Report report{tess::collide::report_to<&Client::receive>(clients), {}};
-//     co_await tess::collide::run_collision(collider, report);
+//     co_await collider.run(report);
 //
 // The report has a name before the co_await: g++ 12 destroys an aggregate twice that is written in
 // one.
 //
 // submit() is a call to the local Manager, so the epoch that makes the collider is awaited first
 // (submit_early() does without). Before a collision, the main coroutine awaits an epoch
-// in which the clients submit. run_collision() collides what was submitted: it chooses the voxels
-// from all objects, and is done when the owners have handled all hits. A voxel starts as soon as
-// its objects are there. Collisions of several colliders may overlap. Those of one may, too, if its
+// in which the clients submit. run() collides what was submitted: it chooses the voxels from all
+// objects, and is done when the owners have handled all hits. A voxel starts as soon as its objects
+// are there. Collisions of several colliders may overlap. Those of one may, too, if its
 // clients submit for the next one only when the objects of the one before are taken on all PEs,
 // which it reports: a collision takes what it finds on each PE.
 //
@@ -70,6 +70,16 @@ struct Collider {
   /// objects are a message that waits for it; then a box that is not valid ends the job.
   void submit_early(Submission objects) const;
 
+  /// Collides all objects that were submitted. When the task is done, the owners have handled all
+  /// hits. Calls `taken`, unless it is empty, when clients may submit for the next collision. Throws
+  /// Error: bad_argument for a report without a call; out_of_range if a coordinate exceeds the range
+  /// of cells, and then the objects are dropped.
+  Task run(Report report, Callback<void> taken = {}) const;
+  /// What the last collision did, on all PEs. No collision may be running.
+  [[nodiscard]] Future<CollisionStatistics> statistics() const;
+  /// Ends the voxels that had no objects since the last call, and frees the memory that Managers
+  /// keep for the next collision. The enclosing epoch includes this. No collision may be running.
+  void retire() const;
   /// Frees the voxels, their balancer and the Managers on all PEs. The enclosing epoch includes
   /// this. It is an error while a collision runs, whose hits would be lost: it ends the job with a
   /// message, at once if this PE started the collision or has not sent its objects yet.
@@ -80,22 +90,5 @@ struct Collider {
 /// positive, or zero on some axes only, for a length of pieces that is negative or NaN, and for a
 /// slack that is negative or not finite.
 [[nodiscard]] Collider make_collider(const ColliderOptions& options);
-
-/// Collides all objects that were submitted. When the task is done, the owners have handled all
-/// hits. Calls `taken`, unless it is empty, when clients may submit for the next collision. Throws
-/// Error: bad_argument for a report without a call; out_of_range if a coordinate exceeds the range
-/// of cells, and then the objects are dropped.
-Task run_collision(Collider collider, Report report, Callback<void> taken = {});
-
-/// What the last collision did, for example
-///
-///     Future<CollisionStatistics> done;
-///     report_statistics(collider, done.callback());
-///     const CollisionStatistics statistics = co_await done;
-void report_statistics(const Collider& collider, const Callback<CollisionStatistics>& target);
-
-/// Ends the voxels that had no objects since the last call, and frees the memory that Managers keep
-/// for the next collision. No collision may be running.
-void retire(const Collider& collider);
 
 }  // namespace tess::collide

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "collide/box.hpp"
+#include "collide/grid_counts.hpp"
 #include "collide/hit.hpp"
-#include "runtime/core/algorithm.hpp"
 
 #include <cstdint>
 
@@ -11,9 +11,10 @@ namespace tess::collide {
 
 /// The voxels, and the pairs that are hits.
 struct ColliderOptions {
-  Point origin{0, 0, 0};
-  /// Of the smallest voxels. Zero: chosen in each collision by expected cost, with an origin.
-  Point size{0, 0, 0};
+  Point origin{0, 0, 0};  ///< a lower corner of a voxel, if their size is given
+  /// The edges of the smallest voxels. Zero: chosen in each collision by expected cost, with an
+  /// origin.
+  Point voxel_size{0, 0, 0};
   PairRules rules{};
   /// Of objects with capsules. Infinite: they are whole. Zero: chosen in each collision by expected
   /// cost, with the size of the voxels; whole if that is given.
@@ -27,24 +28,14 @@ struct ColliderOptions {
 
 /// What the last collision did, on all PEs.
 struct CollisionStatistics {
-  double voxel_size = 0;  ///< the shortest edge, on the finest level; 0 if nothing was done
-  std::uint64_t n_levels = 0;
-  std::uint64_t n_voxels = 0;    ///< that were searched
-  std::uint64_t n_entries = 0;   ///< (object, voxel) pairs that were sent
-  std::uint64_t n_left_out = 0;  ///< and that were not
+  GridCounts grid;  ///< entries that are left out are not sent
   /// Of long thin objects; one per object if they are whole; 0: objects are boxes, without capsules.
   std::uint64_t n_pieces = 0;
   std::uint64_t n_kept = 0;  ///< pairs of larger boxes that were tested (ColliderOptions::slack)
   bool searched = true;      ///< if not, these pairs are of a collision before, and all else is 0
 
   friend CollisionStatistics operator+(const CollisionStatistics& a, const CollisionStatistics& b) {
-    return {std::max(a.voxel_size, b.voxel_size),
-            std::max(a.n_levels, b.n_levels),
-            a.n_voxels + b.n_voxels,
-            a.n_entries + b.n_entries,
-            a.n_left_out + b.n_left_out,
-            a.n_pieces + b.n_pieces,
-            a.n_kept + b.n_kept,
+    return {a.grid + b.grid, a.n_pieces + b.n_pieces, a.n_kept + b.n_kept,
             a.searched || b.searched};
   }
 };

@@ -24,6 +24,8 @@
 #pragma once
 
 #include "collide/capsule.hpp"
+#include "collide/grid_counts.hpp"
+#include "collide/hit.hpp"
 #include "runtime/core/algorithm.hpp"
 
 #include <concepts>
@@ -50,11 +52,7 @@ enum class PairMethod { automatic, all_pairs, sweep, bisection };
 
 /// What a search did.
 struct PairStatistics {
-  double voxel_size = 0;         ///< the longest edge; of the level with the smallest voxels
-  std::uint64_t n_levels = 0;    ///< grids for objects of different sizes
-  std::uint64_t n_voxels = 0;    ///< that were searched
-  std::uint64_t n_entries = 0;   ///< objects in voxels: an object counts in each that it touches
-  std::uint64_t n_left_out = 0;  ///< of them, in voxels that only one model touches
+  GridCounts grid;
   /// Pairs whose boxes overlap. If long thin objects are searched in pieces, these are pairs of
   /// pieces.
   std::uint64_t n_candidates = 0;
@@ -64,11 +62,10 @@ struct PairStatistics {
 
 struct PairOptions {
   Touching touching = Touching::counts;
-  /// One model per object, for searches within one set only; pairs within a model are not tested.
-  /// Empty: all pairs are tested.
+  /// One model per object, for searches within one set only. Empty: all pairs are tested.
   std::span<const std::uint32_t> models = {};
-  bool within_model = false;  ///< with models: tests pairs within a model, too
-  double voxel_size = 0;      ///< positive and finite; or 0: chosen by expected cost
+  WithinModel within_model = WithinModel::skip;  ///< without effect if there are no models
+  double voxel_size = 0;  ///< positive and finite; or 0: chosen by expected cost
   PairMethod method = PairMethod::automatic;
   PairStatistics* statistics = nullptr;  ///< is filled
 };

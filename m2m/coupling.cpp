@@ -231,7 +231,7 @@ Task AnyCoupling::collide_covers() {
   // Named, because g++ 12 destroys an aggregate twice if it is written in a co_await expression.
   const collide::Report to_target{Callback<collide::Hits>(detail::hits_kind, state.target_bytes()),
                                   target_model};
-  co_await collide::run_collision(setup.collider, to_target);
+  co_await setup.collider.run(to_target);
 }
 
 /// Only points that are in no tetrahedron need to know all source pieces, and pieces without

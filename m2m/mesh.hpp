@@ -16,6 +16,9 @@
 namespace tess::m2m {
 
 using collide::Aabb;
+using collide::cross;
+using collide::difference;
+using collide::dot;
 using collide::Point;
 /// A vertex of one mesh, or of one part of it.
 using VertexId = std::int32_t;

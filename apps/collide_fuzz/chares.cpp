@@ -81,11 +81,10 @@ class Client : public tess::Chare<Client, tess::Index1> {
 tess::Task collide_rounds() {
   const Look& look = problem->look;
   const double size = look.voxel_size;
-  const ColliderOptions options{
-      .size = {size, size, size},
-      .rules = {look.touching, look.within_model ? WithinModel::test : WithinModel::skip},
-      .piece_length = look.piece_length,
-      .slack = look.slack};
+  const ColliderOptions options{.voxel_size = {size, size, size},
+                                .rules = {look.touching, look.within_model},
+                                .piece_length = look.piece_length,
+                                .slack = look.slack};
   Collider collider;
   tess::ArrayProxy<Client> clients;
   co_await tess::epoch([&] {
@@ -96,7 +95,7 @@ tess::Task collide_rounds() {
   for (std::size_t round = look.slack > 0 ? 0 : 1; round < 3; ++round) {
     co_await tess::epoch([&] { clients.broadcast<&Client::submit>(collider, round); });
     try {
-      co_await run_collision(collider, report);
+      co_await collider.run(report);
     } catch (const tess::Error& error) {  // voxels that are too small for 32-bit cells
       const std::string_view why = error.what();
       if (size == 0 || (why.find("voxel size") == why.npos && why.find("voxel grid") == why.npos))
@@ -105,7 +104,7 @@ tess::Task collide_rounds() {
     }
     // Ends all voxels; the next collision makes them again.
     if (look.seed % 3 == 1)
-      for (int call = 0; call < 2; ++call) co_await tess::epoch([&] { retire(collider); });
+      for (int call = 0; call < 2; ++call) co_await tess::epoch([&] { collider.retire(); });
   }
   co_await tess::epoch([&] {
     collider.destroy();
@@ -120,7 +119,7 @@ PairList expected(const Objects& scene, const Problem& p) {
   for (std::uint32_t i = 0; i < scene.boxes.size(); ++i)
     for (std::uint32_t j = i + 1; j < scene.boxes.size(); ++j) {
       const ModelId a{scene.models[i]}, b{scene.models[j]};
-      if ((!p.look.within_model && a == b) || !scene.are_pair(i, j)) continue;
+      if ((p.look.within_model == WithinModel::skip && a == b) || !scene.are_pair(i, j)) continue;
       const bool to_a = !p.only || a == *p.only, to_b = !p.only || b == *p.only;
       if (to_a) out.push_back({i, j});
       if (to_b && !(to_a && Client::owner(i) == Client::owner(j))) out.push_back({j, i});

@@ -42,7 +42,8 @@ Look look_of(std::uint64_t seed) {
   look.degenerate = one_of(random, std::array{0.0, 0.1, 0.5, 0.95});
   look.has_large_one = random.chance(0.1);
   look.n_models = static_cast<std::uint32_t>(1 + random.below(4));
-  look.within_model = random.chance(0.4);
+  look.within_model =
+      random.chance(0.4) ? tess::collide::WithinModel::test : tess::collide::WithinModel::skip;
   look.touching = random.chance(0.6) ? tess::collide::Touching::counts
                                      : tess::collide::Touching::does_not_count;
   const double size = one_of(random, std::array{0.0, 0.05, 0.1, 0.3, 0.125, 0.25, 1.0, 4.0});
@@ -61,7 +62,8 @@ std::string describe(const Look& look) {
       "size {:g}, {:g} of the clients with capsules, pieces {:g}, slack {:g}",
       look.n, shape_names[static_cast<std::size_t>(look.shape)],
       place_names[static_cast<std::size_t>(look.place)], look.offset, look.scale, look.largest,
-      look.decades, look.n_models, look.within_model ? " and pairs within" : "",
+      look.decades, look.n_models,
+      look.within_model == tess::collide::WithinModel::test ? " and pairs within" : "",
       look.touching == tess::collide::Touching::counts ? "closed" : "open", look.voxel_size,
       look.with_capsules, look.piece_length, look.slack);
 }

@@ -2,7 +2,7 @@
 // large, and under which rules they are searched. The same seed gives the same scene, bit for bit.
 #pragma once
 
-#include "collide/box.hpp"
+#include "collide/hit.hpp"
 
 #include <array>
 #include <cstdint>
@@ -51,7 +51,7 @@ struct Look {
   double degenerate = 0;         ///< chance of a needle, or of corners that coincide
   bool has_large_one = false;    ///< an object over all others
   std::uint32_t n_models = 1;
-  bool within_model = false;
+  tess::collide::WithinModel within_model{};
   tess::collide::Touching touching{};
   double voxel_size = 0;  ///< 0: chosen
   /// On chares: part of the clients submit the capsules of objects that have some.

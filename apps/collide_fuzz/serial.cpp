@@ -73,7 +73,7 @@ void one_set(const Look& look, const std::vector<Object>& objects,
   options.models = models;
   const auto find = [&](const PairOptions& o) { return pairs(all, o); };
   compare(search(options, outcome, find), across(expected, models), "pairs() with models", outcome);
-  options.within_model = true;
+  options.within_model = WithinModel::test;
   compare(search(options, outcome, find), expected, "pairs() with models, and within them",
           outcome);
   const auto end = static_cast<std::uint32_t>(all.size() / 3);

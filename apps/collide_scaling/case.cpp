@@ -77,7 +77,7 @@ tess::Task run_steps(const Case& given, Row& row) {
   tess::GroupProxy<Client> clients;
   const double size = given.voxel_size / std::sqrt(given.thinned);
   co_await tess::epoch([&] {
-    collider = make_collider({.size = {size, size, size}});
+    collider = make_collider({.voxel_size = {size, size, size}});
     clients = tess::create_group<Client>(given);
   });
   tess::BalancerProxy balancer;
@@ -88,7 +88,7 @@ tess::Task run_steps(const Case& given, Row& row) {
   for (std::int32_t step = 0; step < given.steps; ++step) {
     co_await tess::epoch([&] { clients.broadcast<&Client::submit>(collider, step); });
     const std::int64_t begin = tess::now().count();
-    co_await run_collision(collider, report);
+    co_await collider.run(report);
     const std::int64_t end = tess::now().count();
     const Times times = co_await clients.reduce<&Client::gather>();
     const auto since = [&](std::int64_t t) { return 1e-9 * static_cast<double>(t - begin); };
@@ -96,14 +96,12 @@ tess::Task run_steps(const Case& given, Row& row) {
                      1e-9 * static_cast<double>(times.searched), times.n_pairs});
     if (is_balanced && (step + 1) % given.period == 0) {
       co_await balancer.round();
-      co_await tess::epoch([&] { retire(collider); });
+      co_await tess::epoch([&] { collider.retire(); });
     }
   }
-  tess::Future<CollisionStatistics> done;
-  report_statistics(collider, done.callback());
-  const CollisionStatistics statistics = co_await done;
-  row.voxel_size = statistics.voxel_size;
-  row.n_voxels = statistics.n_voxels;
+  const CollisionStatistics statistics = co_await collider.statistics();
+  row.voxel_size = statistics.grid.voxel_size;
+  row.n_voxels = statistics.grid.n_voxels;
   if (is_balanced)
     for (const tess::balance::Round& round : balancer.history()) {
       row.n_moves += round.n_moved;

@@ -34,7 +34,7 @@ struct Case {
 
 /// A step, in seconds since all objects were submitted.
 struct StepTimes {
-  double seconds = 0;     ///< until run_collision() is done
+  double seconds = 0;     ///< until the collision is done
   double first_hits = 0;  ///< when the last PE has its first hits: the exchange is over
   double last_hits = 0;   ///< when the last voxel has been searched
   double searched = 0;    ///< time in the longest search of a PE, Work::model

@@ -32,7 +32,8 @@ int run(tess::Setup& setup, int argc, char** argv, bool asked_for_pes) {
   line.option("--move HOW", options.move,
               "how models move: own (as the scene does by itself), still, drift[:SIZES per step], "
               "turn[:DEGREES per step]");
-  line.flag("--self", options.rules.within_model, "find pairs within a model, too");
+  bool self = false;
+  line.flag("--self", self, "find pairs within a model, too");
   line.flag("--triangles", options.rules.triangles,
             "test pairs of triangles exactly; otherwise their boxes count");
   line.flag("--open", options.rules.open, "objects that only touch are no pair");
@@ -60,6 +61,7 @@ int run(tess::Setup& setup, int argc, char** argv, bool asked_for_pes) {
             "extreme scenes against brute force; exit code 1 if a pair is lost or doubled. Needs "
             "no INPUT");
   if (!line.parse(argc, argv, collide_scene::scenes_help() + tess::options_help())) return 0;
+  if (self) options.rules.within_model = tess::collide::WithinModel::test;
 
   if (stability && options.inputs.empty())
     line.refuse_without("an INPUT", {"--steps", "--move", "--self", "--triangles", "--open",

@@ -1,6 +1,8 @@
 // The options of the command line. Every room may include this header; it includes none of them.
 #pragma once
 
+#include "collide/hit.hpp"
+
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -9,11 +11,11 @@ namespace collide_scene {
 
 /// Which pairs count.
 struct Rules {
-  bool triangles = false;     ///< pairs of triangles that intersect; otherwise of their boxes
-  bool within_model = false;  ///< pairs within a model, too
-  bool open = false;          ///< objects that only touch are no pair
-  double voxel_size = 0;      ///< 0: chosen by the library
-  double slack = 0;           ///< on chares; 0: each step searches
+  bool triangles = false;  ///< pairs of triangles that intersect; otherwise of their boxes
+  tess::collide::WithinModel within_model = tess::collide::WithinModel::skip;
+  bool open = false;      ///< objects that only touch are no pair
+  double voxel_size = 0;  ///< 0: chosen by the library
+  double slack = 0;       ///< on chares; 0: each step searches
 };
 
 struct Options {

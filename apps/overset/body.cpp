@@ -13,6 +13,7 @@
 namespace overset {
 namespace {
 
+using tess::collide::length;
 using tess::m2m::Tet;
 using tess::m2m::TetMesh;
 using Triangle = std::array<VertexId, 3>;
@@ -29,10 +30,6 @@ struct Skeleton {
   std::vector<std::pair<Point, Point>> points;
   std::vector<Triangle> triangles;  // normals outwards
 };
-
-double length(const Point& p) {
-  return std::sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]);
-}
 
 /// The distance of the surface from the centre in a direction, of length 1.
 double reach(Body::Shape shape, const Point& d) {

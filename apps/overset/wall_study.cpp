@@ -13,26 +13,24 @@
 namespace overset {
 namespace {
 
+using tess::m2m::cross;
+using tess::m2m::difference;
+using tess::m2m::dot;
 using Triangles = std::vector<std::array<VertexId, 3>>;
 
 /// The sum of the solid angles over 4π (van Oosterom and Strackee 1983).
 double winding_by_angles(const std::vector<Point>& points, const Triangles& triangles,
                          const Point& p) {
-  const auto dot = [](const Point& a, const Point& b) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-  };
   double sum = 0;
   for (const auto& t : triangles) {
     std::array<Point, 3> r{};
     std::array<double, 3> length{};
     for (std::size_t i = 0; i < 3; ++i) {
-      for (std::size_t k = 0; k < 3; ++k)
-        r[i][k] = points[static_cast<std::size_t>(t[i])][k] - p[k];
+      r[i] = difference(points[static_cast<std::size_t>(t[i])], p);
       length[i] = std::sqrt(dot(r[i], r[i]));
     }
     const auto& [a, b, c] = r;
-    const Point normal{b[1] * c[2] - b[2] * c[1], b[2] * c[0] - b[0] * c[2],
-                       b[0] * c[1] - b[1] * c[0]};
+    const Point normal = cross(b, c);
     sum +=
         2 * std::atan2(dot(a, normal), length[0] * length[1] * length[2] + dot(a, b) * length[2] +
                                            dot(b, c) * length[0] + dot(c, a) * length[1]);

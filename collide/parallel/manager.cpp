@@ -39,12 +39,12 @@ void Manager::begin(std::uint64_t step, const Plan& plan, const Report& report) 
   Round& r = round(step);
   if (plan.nothing) {
     last_ = {};
-    last_.n_left_out = r.delivery->objects.size();
+    last_.grid.n_entries = last_.grid.n_left_out = r.delivery->objects.size();
     rounds_.erase(step);
     return;
   }
-  r.statistics.voxel_size = std::min({plan.size[0], plan.size[1], plan.size[2]});
-  r.statistics.n_levels = static_cast<std::uint64_t>(std::popcount(plan.levels));
+  r.statistics.grid.voxel_size = std::ranges::max(plan.grid(plan.lowest()).size());
+  r.statistics.grid.n_levels = static_cast<std::uint64_t>(std::popcount(plan.levels));
   r.delivery->plan = plan;
   r.delivery->report = report;
   r.delivery->managers = group();
@@ -131,12 +131,12 @@ void Manager::deliver(std::uint64_t step) {
     const VoxelRecord& record = records[r.n_delivered];
     const std::uint32_t n = record.n_natives + record.n_visitors;
     const VoxelAnswer& answer = r.answer_of[r.n_delivered];
+    r.statistics.grid.n_entries += n;
     if (answer.n_senders == 0) {
-      r.statistics.n_left_out += n;
+      r.statistics.grid.n_left_out += n;
       continue;
     }
-    r.statistics.n_entries += n;
-    r.statistics.n_voxels += answer.maker == pe() ? 1U : 0U;
+    r.statistics.grid.n_voxels += answer.maker == pe() ? 1U : 0U;
     if (!machine().same_process(answer.maker, pe()))
       shipments[answer.maker].add(
           {record.voxel, record.n_natives, record.n_visitors, answer.n_senders},

@@ -163,7 +163,8 @@ PlanOfPieces choose_pieces(const Summary& summary, const ColliderOptions& option
   if (!summary.has_capsules) return {};
   const search::Frame frame = search::frame_of(summary.bounds);
   if (options.piece_length != 0) return {true, options.piece_length, frame};
-  if (options.size != Point{0, 0, 0}) return {true, search::ThinObjects<double>::whole, frame};
+  if (options.voxel_size != Point{0, 0, 0})
+    return {true, search::ThinObjects<double>::whole, frame};
   const detail::Capsules capsules{summary.capsules.data(), [](const void* of, std::size_t i) {
                                     return static_cast<const Capsule*>(of)[i];
                                   }};
@@ -205,7 +206,7 @@ std::size_t n_sampled_per_pe(const Point& size, std::int32_t n_pes) noexcept {
 
 Plan make_plan(const Summary& summary, std::int32_t n_pes, const ColliderOptions& options,
                std::uint64_t step) {
-  Plan plan{step, options.origin, options.size, 0, true, options.rules, {}};
+  Plan plan{step, options.origin, options.voxel_size, 0, true, options.rules, {}};
   if (summary.n < 2 ||
       (options.rules.within_model == WithinModel::skip && summary.models.size() == 1))
     return plan;
@@ -215,7 +216,7 @@ Plan make_plan(const Summary& summary, std::int32_t n_pes, const ColliderOptions
   if (plan.pieces.used && std::isfinite(plan.pieces.longest))
     of_pieces = divided(summary, plan.pieces.longest);
   const Summary& boxes = of_pieces ? *of_pieces : summary;
-  const bool is_chosen = options.size == Point{0, 0, 0};
+  const bool is_chosen = options.voxel_size == Point{0, 0, 0};
   double widest = 0;
   for (std::size_t k = 0; k < 3; ++k) {
     const double lo = boxes.bounds.lo[k], hi = boxes.bounds.hi[k];

@@ -78,6 +78,7 @@ struct Plan {
   [[nodiscard]] bool has(Level level) const noexcept { return (levels >> level & 1U) != 0; }
   [[nodiscard]] VoxelGrid grid(Level level) const;
   [[nodiscard]] Level level_of(double longest_extent) const noexcept;
+  [[nodiscard]] Level lowest() const noexcept { return std::countr_zero(levels); }
   [[nodiscard]] Level highest() const noexcept { return 31 - std::countl_zero(levels); }
 };
 

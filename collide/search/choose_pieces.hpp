@@ -18,7 +18,7 @@ template <class Real>
 
 /// Whether pairs within a model do not count.
 [[nodiscard]] inline bool divides(const PairOptions& options) {
-  return !options.models.empty() && !options.within_model;
+  return !options.models.empty() && options.within_model == WithinModel::skip;
 }
 
 }  // namespace tess::collide::search

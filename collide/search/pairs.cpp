@@ -94,7 +94,6 @@ class Plan {
   }
   void solve(const Part& part) {
     static_cast<void>(search_.solve(part.problem, part.bounds, part.swapped, part.choice));
-    ++search_.statistics().n_levels;
   }
   /// False, without a pair, if large objects touch so many voxels that levels may cost less.
   bool solved_on_one_level(Part& whole) {
@@ -107,7 +106,6 @@ class Plan {
     search_.set_most_entries(4 * n + many);
     const bool solved = search_.solve(whole.problem, whole.bounds, false, whole.choice);
     search_.set_most_entries(~std::size_t{0});
-    if (solved) ++search_.statistics().n_levels;
     return solved;
   }
   /// From a sample: 4 096 of the objects, but at most an eighth, which costs little beside the
@@ -197,7 +195,7 @@ struct Models {
 };
 /// Whether models leave pairs out.
 bool divides(const PairOptions& options) {
-  return !options.models.empty() && !options.within_model;
+  return !options.models.empty() && options.within_model == WithinModel::skip;
 }
 Models count(std::span<const std::uint32_t> models) {
   Models out{models.empty() ? 0 : 1, 0};
@@ -225,7 +223,7 @@ void search_pairs(std::span<const Box<Real, D>> boxes, const PairOptions& option
   if (models.n == 1) {
     if (options.statistics != nullptr) {
       *options.statistics = {};
-      options.statistics->n_left_out = boxes.size();
+      options.statistics->grid.n_entries = options.statistics->grid.n_left_out = boxes.size();
     }
     return;
   }

@@ -67,9 +67,10 @@ bool VoxelSearch<Real, D>::solve(const TheProblem& problem, const TheBox& region
   if (levels_.size() == depth) levels_.emplace_back();
   Level& level = levels_[depth];
   if (!sort_into_voxels(problem, of_a, grid, level)) return false;
+  if (depth == 0) ++statistics_.grid.n_levels;
   const auto cell_size = static_cast<double>(grid.cell_size());
-  if (statistics_.voxel_size == 0 || cell_size < statistics_.voxel_size)
-    statistics_.voxel_size = cell_size;
+  if (statistics_.grid.voxel_size == 0 || cell_size < statistics_.grid.voxel_size)
+    statistics_.grid.voxel_size = cell_size;
   const bool again = is_chosen ? cell_size > 1.01 * options_.voxel_size
                                : options_.method == PairMethod::automatic ||
                                      options_.method == PairMethod::bisection;
@@ -182,7 +183,7 @@ bool VoxelSearch<Real, D>::sort_into_voxels(const TheProblem& problem, const The
   if (!spread<false, false>(problem, of_a, grid, level, count(&Cell::a)) ||
       !spread<true, false>(problem, of_a, grid, level, count(&Cell::b)))
     return false;
-  statistics_.n_entries += n_entries;
+  statistics_.grid.n_entries += n_entries;
 
   // Where the objects of each voxel stand: first those of a, then those of b.
   level.voxels.clear();
@@ -192,8 +193,8 @@ bool VoxelSearch<Real, D>::sort_into_voxels(const TheProblem& problem, const The
     if (n_a + n_b == 0) continue;
     const bool one_model =
         by_model_ ? level.models[c] != several_models : !problem.within_a && (n_a == 0 || n_b == 0);
-    if (one_model) statistics_.n_left_out += n_a + n_b;
     if (one_model || n_a == 0 || n_b + (problem.within_a ? n_a - 1 : 0) == 0) {
+      statistics_.grid.n_left_out += n_a + n_b;
       cells[c] = {no_place, no_place};
       continue;
     }
@@ -201,7 +202,7 @@ bool VoxelSearch<Real, D>::sort_into_voxels(const TheProblem& problem, const The
     cells[c] = {end, end + n_a};
     end += n_a + n_b;
   }
-  statistics_.n_voxels += level.voxels.size();
+  statistics_.grid.n_voxels += level.voxels.size();
   level.sorted.resize(end);
   Entry* const sorted = level.sorted.data();
   const auto place = [&](std::uint32_t Cell::*set) {

@@ -7,9 +7,8 @@ namespace tess::collide {
 namespace {
 
 double squared_length(const Point& a, const Point& b) noexcept {
-  double out = 0;
-  for (std::size_t k = 0; k < 3; ++k) out += (b[k] - a[k]) * (b[k] - a[k]);
-  return out;
+  const Point way = difference(b, a);
+  return dot(way, way);
 }
 
 /// At least the distance of a point from a segment: that to one of its points, in the norm that

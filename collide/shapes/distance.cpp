@@ -11,10 +11,6 @@ using shapes::ratio;
 using shapes::sign_of;
 using shapes::way;
 
-double squared_length(double x, double y, double z) noexcept {
-  return x * x + y * y + z * z;
-}
-
 /// On which part of a segment the nearest point is.
 enum class Part { from, between, to };
 
@@ -30,8 +26,8 @@ Part nearest_part(const Segment& s, const Point& p) noexcept {
 /// The way from `p` to the nearest point.
 Point offset_to(const Segment& s, const Point& p) noexcept {
   const Part part = nearest_part(s, p);
-  if (part == Part::from) return {s.from[0] - p[0], s.from[1] - p[1], s.from[2] - p[2]};
-  if (part == Part::to) return {s.to[0] - p[0], s.to[1] - p[1], s.to[2] - p[2]};
+  if (part == Part::from) return difference(s.from, p);
+  if (part == Part::to) return difference(s.to, p);
   Point out{};
   for (std::size_t k = 0; k < 3; ++k)
     out[k] = ratio(
@@ -54,14 +50,16 @@ Segment edge(const Triangle& t, std::size_t i) noexcept {
 }  // namespace
 
 double distance2(const Point& object, const Point& p) noexcept {
-  return squared_length(p[0] - object[0], p[1] - object[1], p[2] - object[2]);
+  const Point way = difference(p, object);
+  return dot(way, way);
 }
 
 double distance2(const Aabb& object, const Point& p) noexcept {
   const auto off = [&](std::size_t k) {
     return std::max({0.0, object.lo[k] - p[k], p[k] - object.hi[k]});
   };
-  return squared_length(off(0), off(1), off(2));
+  const Point way{off(0), off(1), off(2)};
+  return dot(way, way);
 }
 
 double distance2(const Segment& object, const Point& p) noexcept {

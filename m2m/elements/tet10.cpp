@@ -36,12 +36,6 @@ std::array<Point, 10> derivatives(const Weights& l) {
   return out;
 }
 
-Point cross(const Point& a, const Point& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-double dot(const Point& a, const Point& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
 double largest(const Point& p) {
   return std::max({std::abs(p[0]), std::abs(p[1]), std::abs(p[2])});
 }
@@ -61,9 +55,8 @@ std::optional<Weights> tet10_invert(const Point& p, const Tet10Points& nodes, co
   Tet10Points x;
   double size = 0;
   for (std::size_t n = 0; n < 10; ++n) {
-    for (std::size_t k = 0; k < 3; ++k) x[n][k] = nodes[n][k] - p[k];
-    size = std::max(size, largest({nodes[n][0] - nodes[0][0], nodes[n][1] - nodes[0][1],
-                                   nodes[n][2] - nodes[0][2]}));
+    x[n] = difference(nodes[n], p);
+    size = std::max(size, largest(difference(nodes[n], nodes[0])));
   }
   if (!(size > 0)) return std::nullopt;
   for (Point& at : x)

@@ -28,18 +28,16 @@ double longest_edge(const std::array<Point, 4>& c) {
   double squared = 0;
   for (std::size_t i = 0; i < 4; ++i) {
     for (std::size_t j = i + 1; j < 4; ++j) {
-      const double x = c[i][0] - c[j][0], y = c[i][1] - c[j][1], z = c[i][2] - c[j][2];
-      squared = std::max(squared, x * x + y * y + z * z);
+      const Point edge = difference(c[i], c[j]);
+      squared = std::max(squared, dot(edge, edge));
     }
   }
   return std::sqrt(squared);
 }
 
 double twice_area(const Point& a, const Point& b, const Point& c) {
-  const double ux = b[0] - a[0], uy = b[1] - a[1], uz = b[2] - a[2];
-  const double vx = c[0] - a[0], vy = c[1] - a[1], vz = c[2] - a[2];
-  const double x = uy * vz - uz * vy, y = uz * vx - ux * vz, z = ux * vy - uy * vx;
-  return std::hypot(x, y, z);
+  const Point normal = cross(difference(b, a), difference(c, a));
+  return std::hypot(normal[0], normal[1], normal[2]);
 }
 
 /// The distance from a face up to which a point outside snaps.

@@ -8,16 +8,6 @@
 namespace tess::m2m {
 namespace {
 
-double inner_product(const Point& a, const Point& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-Point outer_product(const Point& a, const Point& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-Point vector_between(const Point& a, const Point& b) {
-  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-
 /// The nearest so far; distances are squared, and in the scaled units.
 struct Closest {
   Weights weights{};
@@ -35,7 +25,7 @@ NearestPoint nearest_point(const Point& p, const std::array<Point, 4>& corners) 
   std::array<Point, 4> c;
   double largest = 0;
   for (std::size_t i = 0; i < 4; ++i) {
-    c[i] = vector_between(corners[i], p);
+    c[i] = difference(corners[i], p);
     for (const double x : c[i]) largest = std::max(largest, std::abs(x));
   }
   int exponent = 0;
@@ -47,33 +37,32 @@ NearestPoint nearest_point(const Point& p, const std::array<Point, 4>& corners) 
   for (std::size_t i = 0; i < 4; ++i) {
     Weights at{};
     at[i] = 1;
-    best.offer(inner_product(c[i], c[i]), at);
+    best.offer(dot(c[i], c[i]), at);
   }
   for (std::size_t i = 0; i < 4; ++i)
     for (std::size_t j = i + 1; j < 4; ++j) {
-      const Point edge = vector_between(c[j], c[i]);
-      const double along = -inner_product(c[i], edge), length = inner_product(edge, edge);
+      const Point edge = difference(c[j], c[i]);
+      const double along = -dot(c[i], edge), length = dot(edge, edge);
       if (!(along > 0 && along < length)) continue;
       const double t = along / length;
       Weights at{};
       at[i] = 1 - t;
       at[j] = t;
       const Point q{c[i][0] + t * edge[0], c[i][1] + t * edge[1], c[i][2] + t * edge[2]};
-      best.offer(inner_product(q, q), at);
+      best.offer(dot(q, q), at);
     }
   for (const auto& [i, j, k] : faces_of_tet) {
-    const Point normal = outer_product(vector_between(c[j], c[i]), vector_between(c[k], c[i]));
+    const Point normal = cross(difference(c[j], c[i]), difference(c[k], c[i]));
     // The areas, times 2 |normal|, of the triangles that the foot of p forms with the edges.
-    const double a = inner_product(normal, outer_product(c[j], c[k])),
-                 b = inner_product(normal, outer_product(c[k], c[i])),
-                 d = inner_product(normal, outer_product(c[i], c[j]));
-    const double sum = a + b + d, squared = inner_product(normal, normal);
+    const double a = dot(normal, cross(c[j], c[k])), b = dot(normal, cross(c[k], c[i])),
+                 d = dot(normal, cross(c[i], c[j]));
+    const double sum = a + b + d, squared = dot(normal, normal);
     if (!(a >= 0 && b >= 0 && d >= 0 && sum > 0 && squared > 0)) continue;
     Weights at{};
     at[i] = a / sum;
     at[j] = b / sum;
     at[k] = d / sum;
-    const double height = inner_product(c[i], normal);
+    const double height = dot(c[i], normal);
     best.offer(height * height / squared, at);
   }
   return {best.weights, std::ldexp(std::sqrt(best.squared), exponent)};

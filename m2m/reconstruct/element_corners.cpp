@@ -12,13 +12,6 @@
 namespace tess::m2m {
 namespace {
 
-Point difference(const Point& a, const Point& b) {
-  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-double product(const Point& a, const Point& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 /// The elements of a part by ascending id, with their tetrahedra by ascending id: in this order all
 /// sums have the same bits in every part.
 struct Elements {
@@ -91,7 +84,7 @@ double limited(double own, const Point& gradient, double low, double high,
                std::span<const Point> arms) {
   double factor = 1;
   for (const Point& arm : arms) {
-    const double change = product(gradient, arm);
+    const double change = dot(gradient, arm);
     if (change > 0) factor = std::min(factor, (high - own) / change);
     if (change < 0) factor = std::min(factor, (low - own) / change);
   }
@@ -146,7 +139,7 @@ std::vector<double> element_corners(MeshView mesh, std::span<const GlobalId> ids
       std::size_t arm = 0;
       for (const std::size_t t : elements.tets_of(e))
         for (std::size_t corner = 0; corner < 4; ++corner, ++arm)
-          out[(4 * t + corner) * n_components + c] = own + factor * product(gradient, arms[arm]);
+          out[(4 * t + corner) * n_components + c] = own + factor * dot(gradient, arms[arm]);
     }
   }
   return out;

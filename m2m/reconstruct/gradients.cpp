@@ -34,8 +34,7 @@ class RowFitter {
     const Point& from = points_[static_cast<std::size_t>(centre)];
     offsets_.clear();
     for (const std::int32_t j : neighbours) {
-      const Point& to = points_[static_cast<std::size_t>(j)];
-      offsets_.push_back({to[0] - from[0], to[1] - from[1], to[2] - from[2]});
+      offsets_.push_back(difference(points_[static_cast<std::size_t>(j)], from));
     }
     return fit_.compute(offsets_, degree, rounding_at(from));
   }

@@ -14,12 +14,6 @@ namespace {
 constexpr ValueRange no_range{std::numeric_limits<double>::infinity(),
                               -std::numeric_limits<double>::infinity()};
 
-double dot(const Point& a, const Point& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-Point minus(const Point& a, const Point& b) {
-  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
 void include(ValueRange& range, double value) {
   if (value < range.low) range.low = value;
   if (value > range.high) range.high = value;
@@ -221,7 +215,7 @@ void limit_cell_gradients(MeshView mesh, std::span<const double> values, std::si
         include(range, ranges[static_cast<std::size_t>(v) * n_components + c]);
       double factor = 1;
       for (const Point& corner : corners) {
-        const double change = dot(gradient, minus(corner, centre));
+        const double change = dot(gradient, difference(corner, centre));
         if (change > 0) factor = std::min(factor, (range.high - own) / change);
         if (change < 0) factor = std::min(factor, (range.low - own) / change);
       }

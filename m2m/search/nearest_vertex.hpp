@@ -26,8 +26,8 @@ namespace tess::m2m {
 }
 
 [[nodiscard]] inline double squared_distance(const Point& p, const Point& q) {
-  const double x = q[0] - p[0], y = q[1] - p[1], z = q[2] - p[2];
-  return x * x + y * y + z * z;
+  const Point way = difference(q, p);
+  return dot(way, way);
 }
 
 class NearestVertex {

@@ -85,9 +85,7 @@ void Polyhedron::for_each_piece(Visit&& visit) const {
       const Point a = edge(first);
       for (std::size_t k = 1; k + 1 < n_ring; ++k) {
         const Point b = edge(ring[k]), c = edge(ring[k + 1]);
-        const double fraction = a[0] * (b[1] * c[2] - b[2] * c[1]) +
-                                a[1] * (b[2] * c[0] - b[0] * c[2]) +
-                                a[2] * (b[0] * c[1] - b[1] * c[0]);
+        const double fraction = dot(a, cross(b, c));
         if (fraction > 0)
           visit(fraction, vertices_[0], vertices_[first], vertices_[ring[k]],
                 vertices_[ring[k + 1]]);

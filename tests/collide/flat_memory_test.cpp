@@ -50,7 +50,7 @@ Task collide_crowd(std::int32_t n_boxes, std::uint64_t& n_pairs) {
     crowd = create<Crowd>(range(1));
   });
   co_await epoch([&] { crowd.broadcast<&Crowd::submit>(collider, n_boxes); });
-  co_await run_collision(collider, {report_to<&Crowd::receive>(crowd), {}});
+  co_await collider.run({report_to<&Crowd::receive>(crowd), {}});
   n_pairs = co_await crowd.reduce<&Crowd::count>();
 }
 
@@ -63,10 +63,10 @@ std::int64_t peak_bytes() {
 constexpr int n_clients = 8;
 
 Task collide_once(ArrayProxy<Client> clients) {
-  const Scoped collider(make_collider({.size = {1, 1, 1}}));
+  const Scoped collider(make_collider({.voxel_size = {1, 1, 1}}));
   co_await epoch([&] { clients.broadcast<&Client::submit>(collider); });
   const Report report{report_to<&Client::receive>(clients), {}};
-  co_await run_collision(collider, report);
+  co_await collider.run(report);
 }
 
 Task collide_often(tess::test::Growth& growth, std::uint64_t& n_pairs) {

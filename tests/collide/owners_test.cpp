@@ -44,7 +44,7 @@ Task collide_two(Owners owners, OwnerId a, OwnerId b, Callback<Hits> call, std::
   const Collider collider = make_collider({});
   collider.submit(Objects{a, ModelId{0}, std::array{Aabb{{0, 0, 0}, {1, 1, 1}}}});
   collider.submit(Objects{b, ModelId{1}, std::array{Aabb{{1, 1, 1}, {2, 2, 2}}}});
-  co_await run_collision(collider, {call, {}});
+  co_await collider.run({call, {}});
   n += co_await owners.template reduce<&Owner::count>();
 }
 

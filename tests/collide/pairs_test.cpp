@@ -69,7 +69,8 @@ std::vector<Pair> expected(const Scene<Real, D>& scene, const PairOptions& optio
   std::vector<Pair> out;
   for (std::uint32_t i = 0; i < scene.boxes.size(); ++i)
     for (std::uint32_t j = i + 1; j < scene.boxes.size(); ++j)
-      if ((options.models.empty() || options.within_model || scene.models[i] != scene.models[j]) &&
+      if ((options.models.empty() || options.within_model == WithinModel::test ||
+           scene.models[i] != scene.models[j]) &&
           overlap(scene.boxes[i], scene.boxes[j], options.touching))
         out.push_back({i, j});
   return out;
@@ -100,13 +101,13 @@ void check(const Scene<Real, D>& scene, std::initializer_list<double> sizes) {
       for (const double size : sizes) {
         CAPTURE(static_cast<int>(touching), static_cast<int>(method), size, D, sizeof(Real));
         PairStatistics statistics;
-        PairOptions options{touching, {}, false, size, method, &statistics};
+        PairOptions options{touching, {}, WithinModel::skip, size, method, &statistics};
         const std::vector<Pair> found = sorted(pairs(boxes, options));
         REQUIRE((found == expected(scene, options)));
         REQUIRE(statistics.n_pairs == found.size());
         options.models = scene.models;
         REQUIRE((sorted(pairs(boxes, options)) == expected(scene, options)));
-        options.within_model = true;
+        options.within_model = WithinModel::test;
         REQUIRE(count_pairs(boxes, options) == found.size());
         const auto a = boxes.first(boxes.size() / 3), b = boxes.subspan(boxes.size() / 3);
         REQUIRE((sorted(pairs(a, b, options)) == expected_of_sets(a, b, touching)));
@@ -172,11 +173,11 @@ TEST_CASE("few large objects among many small ones: two levels, the pairs of bru
   options.statistics = &statistics;
   const std::span<const Aabb> boxes(scene.boxes);
   REQUIRE((sorted(pairs(boxes, options)) == expected(scene, options)));
-  REQUIRE(statistics.n_levels > 1);
-  REQUIRE(statistics.n_entries < 8 * scene.boxes.size());
+  REQUIRE(statistics.grid.n_levels > 1);
+  REQUIRE(statistics.grid.n_entries < 8 * scene.boxes.size());
   const auto a = boxes.first(10000), b = boxes.subspan(10000);
   REQUIRE((sorted(pairs(a, b, options)) == expected_of_sets(a, b, Touching::counts)));
-  REQUIRE(statistics.n_levels > 2);
+  REQUIRE(statistics.grid.n_levels > 2);
 }
 
 TEST_CASE("clusters: a voxel with too many objects is divided again", "[pairs]") {
@@ -188,7 +189,7 @@ TEST_CASE("clusters: a voxel with too many objects is divided again", "[pairs]")
   options.statistics = &statistics;
   const std::span<const Aabb> boxes(scene.boxes);
   REQUIRE((sorted(pairs(boxes, options)) == expected(scene, options)));
-  REQUIRE(statistics.voxel_size < 1e-6);
+  REQUIRE(statistics.grid.voxel_size < 1e-6);
 }
 
 TEST_CASE("objects that reach over the parts of a divided voxel make each pair once", "[pairs]") {
@@ -310,10 +311,32 @@ TEST_CASE("one model alone is left out; identical boxes make n^2 pairs in bounde
   PairStatistics statistics;
   PairOptions options{.models = models, .statistics = &statistics};
   REQUIRE(count_pairs(std::span(boxes), options) == 0);
-  REQUIRE(statistics.n_left_out == 3000);
-  options.within_model = true;
+  REQUIRE(statistics.grid.n_left_out == 3000);
+  options.within_model = WithinModel::test;
   REQUIRE(count_pairs(std::span(boxes), options) == 3000U * 2999 / 2);
   REQUIRE(statistics.bytes < 200 * boxes.size());
+}
+
+TEST_CASE("a search counts the voxels and the objects in them", "[pairs]") {
+  // Along x the voxels 0, 3 and 6 have two boxes each, and the last box is in voxel 7, too.
+  std::vector<Aabb> boxes;
+  for (const double x : {0.0, 0.5, 3.25, 3.5, 6.25, 6.5})
+    boxes.push_back({{x, 0, 0}, {x + 0.25, 1, 1}});
+  boxes.back().hi[0] = 8;
+  const std::vector<std::uint32_t> models{0, 1, 0, 0, 0, 1};
+  PairStatistics statistics;
+  PairOptions options{.models = models, .voxel_size = 1, .statistics = &statistics};
+  (void)count_pairs(std::span<const Aabb>(boxes), options);
+  CHECK(statistics.grid.voxel_size == 1);
+  CHECK(statistics.grid.n_levels == 1);
+  CHECK(statistics.grid.n_voxels == 2);
+  CHECK(statistics.grid.n_entries == 7);
+  CHECK(statistics.grid.n_left_out == 3);  // two of one model, and one alone
+  options.within_model = WithinModel::test;
+  (void)count_pairs(std::span<const Aabb>(boxes), options);
+  CHECK(statistics.grid.n_voxels == 3);
+  CHECK(statistics.grid.n_entries == 7);
+  CHECK(statistics.grid.n_left_out == 1);
 }
 
 TEST_CASE("empty sets and single objects have no pairs", "[pairs]") {

@@ -68,7 +68,7 @@ Reports oracle(const Scene& scene, PairRules rules, std::optional<ModelId> only)
   return test::all_reports(all, rules, only);
 }
 
-/// The arguments of run_collision().
+/// A collider, and the arguments of its run().
 struct Collision {
   Collider collider;
   Report report;
@@ -101,7 +101,7 @@ class Client : public Chare<Client, Index1> {
     test::add(reported_, hits);
   }
   Task collide(Collision collision) {
-    co_await run_collision(collision.collider, collision.report, collision.taken);
+    co_await collision.collider.run(collision.report, collision.taken);
   }
   /// Starts a collision per round when the objects of the one before are taken.
   Task collide_in_a_row(Collision collision, Scene scene) {
@@ -148,6 +148,7 @@ struct Problem {
   std::vector<Reports> rounds;  ///< the reports of each collision
   std::int64_t n_refused = 0;
   std::int64_t n_sent_of_one_model = -1, n_sent_of_two_models = -1;
+  GridCounts grid;
   std::string error;
   std::size_t n_left = 0;  ///< collections on PE 0 after all are destroyed
 };
@@ -182,7 +183,7 @@ Task collide_rounds(Problem& problem) {
   Scene scene = problem.scene;
   for (scene.round = 0; scene.round < kRounds; ++scene.round) {
     co_await epoch([&] { fixture.submit(scene); });
-    co_await run_collision(fixture.collider, fixture.report);
+    co_await fixture.collider.run(fixture.report);
     co_await gather(fixture, problem);
   }
   co_await epoch([&] {
@@ -200,7 +201,7 @@ Task collide_early(Problem& problem) {
     fixture.collider = make_collider(problem.options);
     fixture.clients.broadcast<&Client::submit_early>(fixture.collider, problem.scene);
   });
-  co_await run_collision(fixture.collider, fixture.report);
+  co_await fixture.collider.run(fixture.report);
   co_await gather(fixture, problem);
 }
 
@@ -209,7 +210,7 @@ Task collide_bad(Problem& problem) {
   co_await set_up(problem, fixture);
   co_await epoch(
       [&] { fixture.clients.broadcast<&Client::submit_bad>(fixture.collider, problem.scene); });
-  co_await run_collision(fixture.collider, fixture.report);
+  co_await fixture.collider.run(fixture.report);
   problem.n_refused = co_await fixture.clients.reduce<&Client::count_refused>();
   co_await gather(fixture, problem);
 }
@@ -252,12 +253,24 @@ Task collide_apart(Problem& problem) {
     if (sent == &problem.n_sent_of_two_models)
       fixture.collider.submit(
           Objects{owner_of(Index1{0}), ModelId{7}, std::array{far_box, far_box}});
-    co_await run_collision(fixture.collider, fixture.report);
-    Future<CollisionStatistics> done;
-    report_statistics(fixture.collider, done.callback());
-    *sent = static_cast<std::int64_t>((co_await done).n_entries);
+    co_await fixture.collider.run(fixture.report);
+    const GridCounts grid = (co_await fixture.collider.statistics()).grid;
+    *sent = static_cast<std::int64_t>(grid.n_entries - grid.n_left_out);
   }
   co_await gather(fixture, problem);
+}
+
+/// Along x the voxels 0, 3 and 6 have two boxes each, and the last box is in voxel 7, too.
+Task count_grid(Problem& problem) {
+  const std::array of_model_0{Aabb{{0, 0, 0}, {0.25, 1, 1}}, Aabb{{3.25, 0, 0}, {3.5, 1, 1}},
+                              Aabb{{3.5, 0, 0}, {3.75, 1, 1}}, Aabb{{6.25, 0, 0}, {6.5, 1, 1}}};
+  const std::array of_model_1{Aabb{{0.5, 0, 0}, {0.75, 1, 1}}, Aabb{{6.5, 0, 0}, {7.5, 1, 1}}};
+  Fixture fixture;
+  co_await set_up(problem, fixture);
+  fixture.collider.submit(Objects{owner_of(Index1{0}), ModelId{0}, of_model_0});
+  fixture.collider.submit(Objects{owner_of(Index1{0}), ModelId{1}, of_model_1, LocalId{4}});
+  co_await fixture.collider.run(fixture.report);
+  problem.grid = (co_await fixture.collider.statistics()).grid;
 }
 
 Task collide_refused(Problem& problem) {
@@ -265,11 +278,11 @@ Task collide_refused(Problem& problem) {
   co_await set_up(problem, fixture);
   co_await epoch([&] { fixture.submit(problem.scene); });
   try {
-    co_await run_collision(fixture.collider, fixture.report);
+    co_await fixture.collider.run(fixture.report);
   } catch (const Error& error) {
     problem.error = error.what();
   }
-  co_await run_collision(fixture.collider, fixture.report);  // nothing is submitted
+  co_await fixture.collider.run(fixture.report);  // nothing is submitted
   co_await gather(fixture, problem);
 }
 
@@ -303,10 +316,10 @@ Problem problem_of(std::uint64_t seed) {
   const double size = std::array{0.25, 0.5, 0.7, 1.3, 10.0, 1e-3}[seed % 6];
   problem.options.origin = {seed % 4 == 0 ? 0 : 0.1, 0, -0.3};
   if (seed % 3 == 0) {  // chosen; the scene has a few large boxes
-    problem.options.size = {0, 0, 0};
+    problem.options.voxel_size = {0, 0, 0};
     problem.scene.n_large = static_cast<std::int32_t>(seed % 4);
   } else {
-    problem.options.size = {size, size, 2 * size};
+    problem.options.voxel_size = {size, size, 2 * size};
   }
   problem.options.rules.touching = seed % 11 < 7 ? Touching::counts : Touching::does_not_count;
   problem.options.rules.within_model =
@@ -400,7 +413,7 @@ TEST_CASE("nothing is sent for one model, and voxels of one model alone are not 
   for (const std::string option : {"--pes=1", "--pes=2", "--sim=pes=3,cost=100ns,seed=5"}) {
     Problem problem;
     problem.scene = {.seed = 4, .n_clients = 3, .n_boxes = 40, .n_models = 1};
-    problem.options.size = {1, 1, 1};
+    problem.options.voxel_size = {1, 1, 1};
     CAPTURE(option);
     REQUIRE(run_with(option, problem, &collide_apart) == 0);
     REQUIRE(problem.n_sent_of_one_model == 0);
@@ -410,12 +423,28 @@ TEST_CASE("nothing is sent for one model, and voxels of one model alone are not 
   }
 }
 
+TEST_CASE("a collision counts the voxels and the objects in them as a serial search does",
+          "[collide][parallel]") {
+  for (const WithinModel within : {WithinModel::skip, WithinModel::test}) {
+    Problem problem;
+    problem.scene.n_clients = 1;
+    problem.options.voxel_size = {1, 2, 3};
+    problem.options.rules.within_model = within;
+    REQUIRE(run_with("--sim=pes=3,cost=100ns,seed=5", problem, &count_grid) == 0);
+    CHECK(problem.grid.voxel_size == 3);
+    CHECK(problem.grid.n_levels == 1);
+    CHECK(problem.grid.n_voxels == (within == WithinModel::skip ? 2 : 3));
+    CHECK(problem.grid.n_entries == 7);
+    CHECK(problem.grid.n_left_out == (within == WithinModel::skip ? 3 : 1));
+  }
+}
+
 TEST_CASE("voxels too small for 32-bit cells are refused, and the collider goes on",
           "[collide][parallel]") {
   for (const std::string option : {"--pes=2", "--sim=pes=3,cost=100ns,seed=5"}) {
     Problem problem;
     problem.scene = {.seed = 3, .n_clients = 3, .n_boxes = 40, .n_models = 2};
-    problem.options.size = {1e-10, 1e-10, 1e-10};
+    problem.options.voxel_size = {1e-10, 1e-10, 1e-10};
     CAPTURE(option);
     REQUIRE(run_with(option, problem, &collide_refused) == 0);
     REQUIRE_THAT(problem.error, Catch::Contains("has no 32-bit cell at voxel size 1e-10"));

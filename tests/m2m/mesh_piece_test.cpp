@@ -73,7 +73,7 @@ Task there_and_back(Counts& there_found, Counts& back_found) {
   co_await there.search();
   co_await back.search();
   for (int call = 0; call < 2; ++call)  // the first one finds them used
-    co_await epoch([&] { collide::retire(there.collider()); });
+    co_await epoch([&] { there.collider().retire(); });
   co_await there.search();
   co_await epoch([&] {
     small.broadcast<&Patch::forget>();

@@ -37,7 +37,7 @@ tess::Task find_pairs(std::uint64_t& n_pairs) {
   const auto clients = tess::create<Client>(tess::range(8));
   co_await tess::epoch([&] { clients.broadcast<&Client::submit>(collider); });
   const tess::collide::Report report{tess::collide::report_to<&Client::receive>(clients), {}};
-  co_await tess::collide::run_collision(collider, report);
+  co_await collider.run(report);
   n_pairs = co_await clients.reduce<&Client::count>();
 }
 

@@ -119,7 +119,7 @@ tess::Task collide(const Problem& problem, const Setting& setting, double& nanos
     const ProcessWatch processor;
     const Stopwatch elapsed;
     co_await tess::epoch([&] { clients.broadcast<&Client::submit>(collider); });
-    co_await run_collision(collider, report);
+    co_await collider.run(report);
     nanoseconds = setting.n_pes == 1 ? processor.nanoseconds() : elapsed.nanoseconds();
     n_pairs = co_await clients.reduce<&Client::give_count>();
   }

@@ -9,6 +9,8 @@
 namespace collide_scene {
 namespace {
 
+using tess::collide::WithinModel;
+
 double ns_per_object(const Report& report) {
   return report.n_objects == 0
              ? 0
@@ -16,8 +18,8 @@ double ns_per_object(const Report& report) {
 }
 
 template <class T>
-std::string or_unknown(const std::optional<T>& value) {
-  return value ? fmt::format("{:.6g}", static_cast<double>(*value)) : "-";
+std::string number(T value) {
+  return fmt::format("{:.6g}", static_cast<double>(value));
 }
 
 const char* kind_of_objects(const Report& report) {
@@ -31,9 +33,9 @@ std::string pairs_in_words(const Report& report) {
                      : report.n_triangles > 0 ? "boxes of triangles that overlap"
                                               : "boxes that overlap",
                      rules.open ? " (touching does not count)" : "",
-                     report.n_models == 0 ? "no models"
-                     : rules.within_model ? "between and within models"
-                                          : "between models");
+                     report.n_models == 0                      ? "no models"
+                     : rules.within_model == WithinModel::test ? "between and within models"
+                                                               : "between models");
 }
 
 std::string slack_in_words(const RunResult& result) {
@@ -64,13 +66,13 @@ std::string explanation(const Report& report) {
                    : rules.triangles ? "used if most triangles are long and thin: pairs whose "
                                        "capsules are apart are not tested"
                                      : "left out: boxes that overlap are pairs");
-  line("models",
-       report.n_models == 0
-           ? "left out: every pair counts"
-           : fmt::format("{}: {}", report.n_models,
-                         rules.within_model ? "no voxel is left out"
-                                            : "voxels that one model alone touches are left out"));
-  if (report.n_models == 1 && !rules.within_model)
+  line("models", report.n_models == 0
+                     ? "left out: every pair counts"
+                     : fmt::format("{}: {}", report.n_models,
+                                   rules.within_model == WithinModel::test
+                                       ? "no voxel is left out"
+                                       : "voxels that one model alone touches are left out"));
+  if (report.n_models == 1 && rules.within_model == WithinModel::skip)
     line("", "one model has no pairs: --self tests pairs within it");
   line("voxel size", rules.voxel_size > 0 ? fmt::format("{} (--voxel-size)", rules.voxel_size)
                                           : "chosen from the objects");
@@ -87,18 +89,19 @@ std::string explanation(const Report& report) {
 std::string table(const Report& report) {
   const RunResult& result = report.result;
   const GridReport& grid = result.grid;
+  const tess::collide::GridCounts& counts = grid.counts;
   std::string out = report.scene + "\n";
   const auto line = [&out](const char* name, const std::string& value) {
     out += fmt::format("  {:<10} {}\n", name, value);
   };
   line("machine", report.on_chares ? report.machine : "one thread, without the runtime");
   line("pairs", pairs_in_words(report));
-  if (report.n_models == 1 && !report.options.rules.within_model)
+  if (report.n_models == 1 && report.options.rules.within_model == WithinModel::skip)
     line("", "there is one model, so there are no pairs; --self finds those within it");
   line("grid",
        fmt::format("voxel size {}, {} levels, {} voxels, {} entries, {} objects left out",
-                   or_unknown(grid.voxel_size), or_unknown(grid.levels), or_unknown(grid.voxels),
-                   or_unknown(grid.entries), or_unknown(grid.left_out)));
+                   number(counts.voxel_size), number(counts.n_levels), number(counts.n_voxels),
+                   number(counts.n_entries), number(counts.n_left_out)));
   if (grid.pieces.value_or(0) != 0)
     line("", *grid.pieces == report.n_objects
                  ? "long thin triangles, whole, by their capsules"
@@ -148,11 +151,12 @@ std::string json(const Report& report) {
   out["pairs"] = total.n_pairs;
   out["candidates"] = total.n_candidates;
   set("false_positive_rate", report.false_positive_rate);
-  set("voxel_size", result.grid.voxel_size);
-  set("levels", result.grid.levels);
-  set("voxels", result.grid.voxels);
-  set("entries", result.grid.entries);
-  set("left_out", result.grid.left_out);
+  const tess::collide::GridCounts& grid = result.grid.counts;
+  out["voxel_size"] = grid.voxel_size;
+  out["levels"] = grid.n_levels;
+  out["voxels"] = grid.n_voxels;
+  out["entries"] = grid.n_entries;
+  out["left_out"] = grid.n_left_out;
   set("pieces", result.grid.pieces);
   set("grid_bytes", result.grid.bytes);
   out["slack"] = report.options.rules.slack;

@@ -6,11 +6,10 @@
 namespace collide_scene {
 namespace {
 using tess::collide::Aabb;
+using tess::collide::cross;
+using tess::collide::difference;
+using tess::collide::dot;
 using tess::collide::Point;
-
-double dot(const Point& a, const Point& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
 
 // From the side of negative x and y, 32 degrees above the plane: three unit vectors.
 constexpr double cosine = 0.848048096156426, sine = 0.529919264233205;  // of 32 degrees
@@ -63,12 +62,7 @@ View::View(const Scene& scene, int n_pixels) {
       least_y = std::min(least_y, seen.y[i]);
       greatest_y = std::max(greatest_y, seen.y[i]);
     }
-    Point a{}, b{};
-    for (std::size_t k = 0; k < 3; ++k) {
-      a[k] = from[1][k] - from[0][k];
-      b[k] = from[2][k] - from[0][k];
-    }
-    Point normal{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+    Point normal = cross(difference(from[1], from[0]), difference(from[2], from[0]));
     if (dot(normal, w) < 0) normal = {-normal[0], -normal[1], -normal[2]};
     const double length = std::sqrt(dot(normal, normal));
     seen.light =

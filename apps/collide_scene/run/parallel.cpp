@@ -22,12 +22,11 @@ ParallelCollisions::ParallelCollisions(const Scene& scene, const Rules& rules)
     : scene_(scene), rules_(rules) {}
 
 tess::Task ParallelCollisions::begin() {
-  const PairRules pair_rules{
-      rules_.open ? Touching::does_not_count : Touching::counts,
-      scene_.models.empty() || rules_.within_model ? WithinModel::test : WithinModel::skip};
+  const PairRules pair_rules{rules_.open ? Touching::does_not_count : Touching::counts,
+                             scene_.models.empty() ? WithinModel::test : rules_.within_model};
   const double size = rules_.voxel_size;  // zero: chosen
   const ColliderOptions options{
-      .size = {size, size, size}, .rules = pair_rules, .slack = rules_.slack};
+      .voxel_size = {size, size, size}, .rules = pair_rules, .slack = rules_.slack};
   co_await tess::epoch([&] {
     collider_ = make_collider(options);
     clients_ = tess::create<Client>(tess::range(tess::n_pes()));
@@ -56,12 +55,10 @@ tess::Task ParallelCollisions::step(int step, int repeat, StepResult& result,
     if (run > 0) co_await tess::epoch([&] { clients_.broadcast<&Client::forget>(); });
     const tess::Time begin = tess::now();
     co_await tess::epoch([&] { clients_.broadcast<&Client::submit>(collider_); });
-    co_await run_collision(collider_, report);
+    co_await collider_.run(report);
     const double seconds = tess::seconds(tess::now() - begin);
     result.seconds = run == 0 ? seconds : std::min(result.seconds, seconds);
-    tess::Future<CollisionStatistics> done;
-    report_statistics(collider_, done.callback());
-    const CollisionStatistics statistics = co_await done;
+    const CollisionStatistics statistics = co_await collider_.statistics();
     result.n_kept = statistics.n_kept;
     result.searched = statistics.searched;
     if (result.searched) last_ = statistics;
@@ -72,11 +69,7 @@ tess::Task ParallelCollisions::step(int step, int repeat, StepResult& result,
 }
 
 tess::Task ParallelCollisions::end(RunResult& result) {
-  result.grid.voxel_size = last_.voxel_size;
-  result.grid.levels = last_.n_levels;
-  result.grid.voxels = last_.n_voxels;
-  result.grid.entries = last_.n_entries;
-  result.grid.left_out = last_.n_left_out;
+  result.grid.counts = last_.grid;
   result.grid.pieces = last_.n_pieces;
   result.peak_memory_bytes = co_await clients_.reduce<&Client::give_memory>();
   co_await tess::epoch([&] {

@@ -2,6 +2,7 @@
 // answer does not depend on the order of pairs, on PEs, processes or voxels.
 #pragma once
 
+#include "collide/grid_counts.hpp"
 #include "runtime/core/hash.hpp"
 
 #include <algorithm>
@@ -43,14 +44,11 @@ struct Answer {
   }
 };
 
-/// What the library says about its grid; a number that it does not say is absent.
+/// What the library says about its grid; a number that one of its faces does not say is absent.
 struct GridReport {
-  std::optional<double> voxel_size;
-  std::optional<std::uint64_t> levels, voxels;
-  std::optional<std::uint64_t> entries;   ///< (object, voxel)
-  std::optional<std::uint64_t> left_out;  ///< objects in voxels of one model
-  std::optional<std::uint64_t> pieces;    ///< of triangles with capsules; 0: objects are boxes
-  std::optional<std::uint64_t> bytes;     ///< of the grid and its scratch
+  tess::collide::GridCounts counts;
+  std::optional<std::uint64_t> pieces;  ///< of triangles with capsules; 0: objects are boxes
+  std::optional<std::uint64_t> bytes;   ///< of the grid and its scratch
 };
 
 struct StepResult {

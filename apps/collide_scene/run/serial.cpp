@@ -34,11 +34,7 @@ SerialCollision collide_once(const Scene& scene, const Rules& rules, int step,
   out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   out.cpu_seconds = tess::thread_cpu_seconds() - cpu_begin;
   out.answer.n_candidates = statistics.n_candidates;
-  out.grid.voxel_size = statistics.voxel_size;
-  out.grid.levels = statistics.n_levels;
-  out.grid.voxels = statistics.n_voxels;
-  out.grid.entries = statistics.n_entries;
-  out.grid.left_out = statistics.n_left_out;
+  out.grid.counts = statistics.grid;
   out.grid.bytes = statistics.bytes;
   return out;
 }

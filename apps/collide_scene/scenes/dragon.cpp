@@ -9,14 +9,12 @@
 namespace collide_scene {
 namespace {
 
+using tess::collide::cross;
+using tess::collide::dot;
 using tess::collide::Point;
 
 /// The tube is about 14 times as long as it is round.
 constexpr double kLengthToGirth = 14;
-
-Point cross(const Point& a, const Point& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
 
 /// The knot lies on a torus with radii 2 and 1: three times around the tube of the torus while it
 /// goes twice around the hole. Its normal on the torus, and the tangent, give a frame that closes.
@@ -26,7 +24,7 @@ Point on_tube(double along, double around) {
   const Point centre{(2 + c) * x, (2 + c) * y, s}, normal{c * x, c * y, s};
   const Point tangent{-3 * s * x - 2 * (2 + c) * y, -3 * s * y + 2 * (2 + c) * x, 3 * c};
   Point side = cross(tangent, normal);
-  const double length = std::sqrt(side[0] * side[0] + side[1] * side[1] + side[2] * side[2]);
+  const double length = std::sqrt(dot(side, side));
   const double radius = 0.35 * (1 + 0.2 * sine(37 * along) * cosine(5 * around) +
                                 0.06 * sine(211 * along + 3 * around));
   Point out{};

@@ -9,6 +9,7 @@
 namespace collide_scene {
 namespace {
 
+using tess::collide::dot;
 using tess::collide::Point;
 
 /// Uniform over all directions.
@@ -16,7 +17,7 @@ Point random_direction(tess::Random& random) {
   for (;;) {
     Point d{};
     for (double& x : d) x = 2 * random.unit() - 1;
-    const double length2 = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+    const double length2 = dot(d, d);
     if (length2 > 1 || length2 < 1e-3) continue;
     for (double& x : d) x /= std::sqrt(length2);
     return d;

@@ -21,7 +21,7 @@ double ns_per_object(const StudyRow& row) {
   return row.ns_per_object;
 }
 double entries(const StudyRow& row) {
-  return static_cast<double>(row.grid.entries.value_or(0));
+  return static_cast<double>(row.grid.counts.n_entries);
 }
 double false_percent(const StudyRow& row) {
   return 100 * row.false_positive_rate;
@@ -58,10 +58,10 @@ std::string study_table(const std::vector<StudyRow>& rows) {
     }
     out += fmt::format(
         "  {:<10} {:>7} {:>11.4g} {:>7} {:>10} {:>11} {:>12} {:>12} {:>8.2f} {:>12} {:>10.2f}{}\n",
-        row.objects, row.factor, row.voxel_size, or_else(row.grid.levels, "-"),
-        or_else(row.grid.voxels, "-"), or_else(row.grid.entries, "-"), row.answer.n_candidates,
-        row.answer.n_pairs, 100 * row.false_positive_rate, or_else(row.grid.bytes, "-"),
-        row.ns_per_object, row.agrees ? "" : "  OTHER PAIRS");
+        row.objects, row.factor, row.voxel_size, row.grid.counts.n_levels, row.grid.counts.n_voxels,
+        row.grid.counts.n_entries, row.answer.n_candidates, row.answer.n_pairs,
+        100 * row.false_positive_rate, or_else(row.grid.bytes, "-"), row.ns_per_object,
+        row.agrees ? "" : "  OTHER PAIRS");
   }
   return out +
          "  factor: of the voxel size that the library chooses; false: pairs of boxes that are no "
@@ -72,13 +72,18 @@ std::string study_csv(const std::vector<StudyRow>& rows) {
   std::string out =
       "objects,factor,voxel_size,levels,voxels,entries,left_out,candidates,pairs,"
       "false_positive_rate,bytes,cpu_seconds,cpu_ns_per_object,agrees,note\n";
-  for (const StudyRow& row : rows)
+  for (const StudyRow& row : rows) {
+    const tess::collide::GridCounts& grid = row.grid.counts;
+    const auto count = [&row](std::uint64_t n) {  // none if the voxel size was refused
+      return row.note.empty() ? fmt::format("{}", n) : std::string();
+    };
     out += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", row.objects, row.factor,
-                       row.voxel_size, or_else(row.grid.levels, ""), or_else(row.grid.voxels, ""),
-                       or_else(row.grid.entries, ""), or_else(row.grid.left_out, ""),
-                       row.answer.n_candidates, row.answer.n_pairs, row.false_positive_rate,
-                       or_else(row.grid.bytes, ""), row.cpu_seconds, row.ns_per_object,
-                       row.agrees ? 1 : 0, plot::csv_field(row.note));
+                       row.voxel_size, count(grid.n_levels), count(grid.n_voxels),
+                       count(grid.n_entries), count(grid.n_left_out), row.answer.n_candidates,
+                       row.answer.n_pairs, row.false_positive_rate, or_else(row.grid.bytes, ""),
+                       row.cpu_seconds, row.ns_per_object, row.agrees ? 1 : 0,
+                       plot::csv_field(row.note));
+  }
   return out;
 }
 

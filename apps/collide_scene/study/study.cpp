@@ -36,7 +36,7 @@ void measure(const Scene& scene, const Rules& rules, StudyRow& row) {
     return;
   }
   row.ns_per_object = row.cpu_seconds * 1e9 / static_cast<double>(scene.n_objects());
-  if (row.grid.voxel_size.value_or(0) > 0) row.voxel_size = *row.grid.voxel_size;
+  if (row.grid.counts.voxel_size > 0) row.voxel_size = row.grid.counts.voxel_size;
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ class Collision final : public Stepped {
     const double columns = domain.columns, rows = domain.rows;
     // Two deep: all boxes are in one layer.
     collider_ = tess::collide::make_collider(
-        {.size = {domain.width / columns, domain.height / rows, 2}, .rules = pair_rules});
+        {.voxel_size = {domain.width / columns, domain.height / rows, 2}, .rules = pair_rules});
     const std::int32_t n = owners_a_pe * tess::n_pes();
     owners_ = tess::create<Owner>(tess::range(n), stations_, n);
     return balances(experiment_) ? start_balancing(collider_.voxels, experiment_, outcome_)
@@ -32,12 +32,12 @@ class Collision final : public Stepped {
   tess::Task step(std::int32_t iteration) override {
     co_await tess::epoch([&] { owners_.broadcast<&Owner::submit>(collider_, iteration); });
     const tess::collide::Report report = report_to(owners_, stations_);
-    co_await tess::collide::run_collision(collider_, report);
+    co_await collider_.run(report);
   }
   tess::Task end() override {
     co_await tess::epoch([this] { owners_.broadcast<&Owner::end>(); });
     // Idle for two calls: every voxel ends.
-    for (int i = 0; i < 2; ++i) co_await tess::epoch([this] { tess::collide::retire(collider_); });
+    for (int i = 0; i < 2; ++i) co_await tess::epoch([this] { collider_.retire(); });
   }
 
  private:

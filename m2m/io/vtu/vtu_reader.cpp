@@ -121,14 +121,10 @@ class VtuMeshReader {
   /// VTK's wedges have the opposite orientation of ExodusII's; many programs write the latter.
   [[nodiscard]] bool is_inverted(const std::array<VertexId, 10>& wedge) const {
     const auto edge = [&](std::size_t to) {
-      const Point& a = mesh_.points[static_cast<std::size_t>(wedge[0])];
-      const Point& b = mesh_.points[static_cast<std::size_t>(wedge[to])];
-      return Point{b[0] - a[0], b[1] - a[1], b[2] - a[2]};
+      return difference(mesh_.points[static_cast<std::size_t>(wedge[to])],
+                        mesh_.points[static_cast<std::size_t>(wedge[0])]);
     };
-    const Point u = edge(1), v = edge(2), w = edge(3);
-    return u[0] * (v[1] * w[2] - v[2] * w[1]) + u[1] * (v[2] * w[0] - v[0] * w[2]) +
-               u[2] * (v[0] * w[1] - v[1] * w[0]) <
-           0;
+    return dot(edge(1), cross(edge(2), edge(3))) < 0;
   }
 
   const std::string& path_;

@@ -31,11 +31,11 @@ Task misuse(const std::string& where, double slack) {
   const auto clients = create_group<Client>();
   co_await epoch([&] { clients.broadcast<&Client::submit>(collider); });
   const Report report{report_to<&Client::receive>(clients), {}};
-  Task first = run_collision(collider, report);
+  Task first = collider.run(report);
   if (where == "main") collider.destroy();
   if (where == "client") clients[my_pe()].send<&Client::destroy_collider>(collider);
   co_await first;
-  co_await run_collision(collider, report);  // of nothing
+  co_await collider.run(report);  // of nothing
   co_await epoch([&] { collider.destroy(); });
   print("no misuse\n");
 }

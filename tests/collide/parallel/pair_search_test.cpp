@@ -67,7 +67,7 @@ Task collide_crowds(std::int32_t n_boxes, bool in_pieces, Models models, PairRul
     crowds = create<Crowd>(range(2));
   });
   co_await epoch([&] { crowds.broadcast<&Crowd::submit>(collider, n_boxes, in_pieces, models); });
-  co_await run_collision(collider, {report_to<&Crowd::receive>(crowds), {}});
+  co_await collider.run({report_to<&Crowd::receive>(crowds), {}});
   received = co_await crowds.reduce<&Crowd::gather>();
 }
 

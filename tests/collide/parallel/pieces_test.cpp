@@ -112,13 +112,11 @@ Task collide_needles(NeedleScene setting, NeedlePairs& outcome) {
   });
   co_await epoch([&] { clients.broadcast<&NeedleOwner::submit>(collider); });
   const Report report{report_to<&NeedleOwner::receive>(clients), {}, Receivers::one_owner};
-  co_await run_collision(collider, report);
+  co_await collider.run(report);
   outcome.pairs = co_await clients.reduce<&NeedleOwner::give_pairs>();
   std::sort(outcome.pairs.begin(), outcome.pairs.end());
   outcome.n_hits = co_await clients.reduce<&NeedleOwner::give_hits>();
-  Future<CollisionStatistics> statistics;
-  report_statistics(collider, statistics.callback());
-  outcome.statistics = co_await statistics;
+  outcome.statistics = co_await collider.statistics();
 }
 
 NeedlePairs outcome_of(const NeedleScene& setting, const test::Machine& machine) {
@@ -174,7 +172,7 @@ TEST_CASE("pieces of any length find each pair once, in any order of delivery",
   test::for_seeds(1, 1 + test::n_seeds(40), [&](std::uint64_t seed) {
     setting.options.piece_length = std::array{whole, 0.5, 0.1, 0.02, 1e-6}[seed % 5];
     const double size = std::array{0.0, 0.2, 0.05}[seed % 3];
-    setting.options.size = {size, size, size};
+    setting.options.voxel_size = {size, size, size};
     const NeedlePairs outcome = outcome_of(
         setting, {.pes = 4, .per_process = seed % 2 == 0 ? 1 : 0, .seed = seed, .migration = 0.1});
     const std::uint64_t n = n_clients * setting.n;
@@ -187,7 +185,7 @@ TEST_CASE("pieces of any length find each pair once, in any order of delivery",
 TEST_CASE("a voxel size that is given leaves objects with capsules whole",
           "[collide][parallel][pieces]") {
   NeedleScene setting = needles;
-  setting.options.size = {0.1, 0.1, 0.1};
+  setting.options.voxel_size = {0.1, 0.1, 0.1};
   const NeedlePairs outcome = outcome_of(setting, two_processes);
   CHECK(outcome.pairs == oracle(needles));
   CHECK(outcome.statistics.n_pieces == n_clients * needles.n);
@@ -241,7 +239,7 @@ std::int64_t n_received(const TwoObjects& objects, const ColliderOptions& option
     });
     co_await epoch([&] { owners.broadcast<&OwnerOfOne::submit>(collider, objects); });
     const Report report{report_to<&OwnerOfOne::receive>(owners), {}};
-    co_await run_collision(collider, report);
+    co_await collider.run(report);
     n = co_await owners.reduce<&OwnerOfOne::give>();
   };
   test::Machine{.pes = 2, .per_process = 1, .seed = 3}.run(program).require_success();
@@ -271,7 +269,7 @@ TEST_CASE("a piece that is a little larger than its level allows is searched",
   search::cut(box, capsule, 16, pieces.data());
   REQUIRE(pieces[8].hi[0] - pieces[8].lo[0] > 0.5);
   CHECK(n_received({{box, box}, {capsule, capsule}},
-                   {.size = {0.03125, 0.03125, 0.03125}, .piece_length = 0.4375}) == 2);
+                   {.voxel_size = {0.03125, 0.03125, 0.03125}, .piece_length = 0.4375}) == 2);
 }
 
 TEST_CASE("an object whose capsule is no capsule is found by its box",

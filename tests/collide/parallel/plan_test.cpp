@@ -68,8 +68,8 @@ TEST_CASE("a voxel on chares has enough objects to be worth its messages", "[col
   PairStatistics serial;
   (void)count_pairs(std::span<const Aabb>(sheet(512)), {.statistics = &serial});
   const double n = objects_per_voxel(512, 1);
-  CAPTURE(serial.voxel_size);
-  CHECK(n > 1.5 * serial.voxel_size * serial.voxel_size);
+  CAPTURE(serial.grid.voxel_size);
+  CHECK(n > 1.5 * serial.grid.voxel_size * serial.grid.voxel_size);
   CHECK(n < 1024);
 }
 
@@ -133,9 +133,9 @@ TEST_CASE("objects of the largest extents have voxels", "[collide][parallel]") {
   objects.append(Objects{.boxes = boxes}, PeId{0});
   for (const double size : {5e307, 0.}) {
     CAPTURE(size);
-    const Plan plan =
-        make_plan(Summary(objects, 0, 2), 1,
-                  {.size = {size, size, size}, .rules = {.within_model = WithinModel::test}}, 1);
+    const Plan plan = make_plan(
+        Summary(objects, 0, 2), 1,
+        {.voxel_size = {size, size, size}, .rules = {.within_model = WithinModel::test}}, 1);
     for (Level level = 0; level < most_levels; ++level)
       if (plan.has(level)) CHECK_NOTHROW(plan.grid(level).cells_of(objects.bounds()));
     CHECK(plan.has(plan.level_of(far)));
@@ -150,9 +150,9 @@ TEST_CASE("objects of denormal extents have voxels on every level that they may 
                                 {{1000 * s, 0, 0}, {1200 * s, 200 * s, 200 * s}}};
   ObjectList objects;
   objects.append(Objects{.boxes = boxes}, PeId{0});
-  const Plan plan =
-      make_plan(Summary(objects, 0, 0), 1,
-                {.size = {6 * s, 6 * s, 6 * s}, .rules = {.within_model = WithinModel::test}}, 1);
+  const Plan plan = make_plan(
+      Summary(objects, 0, 0), 1,
+      {.voxel_size = {6 * s, 6 * s, 6 * s}, .rules = {.within_model = WithinModel::test}}, 1);
   for (const double extent : {15 * s, 200 * s}) CHECK(plan.has(plan.level_of(extent)));
 }
 
@@ -261,7 +261,7 @@ TEST_CASE("pieces have voxels of their size, on levels up to that of the largest
   const Summary mixed = JoinSummaries{}.finish(
       JoinSummaries{}.combine(needles, summary_of(1, 10, 100 * plan.size[0], false)));
   ColliderOptions given = options;
-  given.size = plan.size;
+  given.voxel_size = plan.size;
   given.piece_length = plan.pieces.longest;
   const Plan of_mixed = make_plan(mixed, 2, given, 1);
   CHECK(of_mixed.highest() == of_mixed.level_of(100 * plan.size[0]));

@@ -145,7 +145,7 @@ Task collide_round(Collider collider, ArrayProxy<Client> clients, std::int32_t r
   const std::int32_t n_clients = 2 * n_pes();
   const Report report{report_to<&Client::receive>(clients), only, receivers_in(round)};
   co_await epoch([&] { clients.broadcast<&Client::submit>(collider, round); });
-  co_await run_collision(collider, report);
+  co_await collider.run(report);
   const Answer answer = co_await clients.reduce<&Client::gather>(),
                expected = oracle(n_clients, round, only);
   TESS_CHECK(answer == expected, "round ", round, ": ", answer.n, " hits were reported, ",
@@ -154,9 +154,7 @@ Task collide_round(Collider collider, ArrayProxy<Client> clients, std::int32_t r
 
 /// Whether the last collision of a collider with a slack tested pairs that were kept.
 Task add_if_kept(Collider collider, std::int32_t& n_kept) {
-  Future<CollisionStatistics> done;
-  report_statistics(collider, done.callback());
-  const CollisionStatistics statistics = co_await done;
+  const CollisionStatistics statistics = co_await collider.statistics();
   TESS_CHECK(statistics.n_kept > 0, "no pair of larger boxes was tested");
   n_kept += statistics.searched ? 0 : 1;
 }

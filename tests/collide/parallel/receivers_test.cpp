@@ -57,12 +57,12 @@ std::vector<std::int64_t> received(const std::string& option, Receivers receiver
     Collider collider;
     ArrayProxy<Row> rows;
     co_await epoch([&] {
-      collider = make_collider({.size = {4, 4, 4}});
+      collider = make_collider({.voxel_size = {4, 4, 4}});
       rows = create<Row>(range(2));
     });
     co_await epoch([&] { rows.broadcast<&Row::submit>(collider, n_each); });
     const Report report{report_to<&Row::receive>(rows), {}, receivers};
-    co_await run_collision(collider, report);
+    co_await collider.run(report);
     counts = co_await rows.reduce<&Row::gather>();
   };
   REQUIRE(run(setup, [&]() -> Task { return program(); }) == 0);
@@ -111,7 +111,7 @@ std::vector<std::array<std::int32_t, 4>> of_model(const std::string& option, Mod
     });
     co_await epoch([&] { clients.broadcast<&Mixed::submit>(collider, boxes_of_each); });
     const Report report{report_to<&Mixed::receive>(clients), only};
-    co_await run_collision(collider, report);
+    co_await collider.run(report);
     pairs = co_await clients.reduce<&Mixed::gather>();
   };
   REQUIRE(run(setup, [&]() -> Task { return program(); }) == 0);
@@ -189,7 +189,7 @@ TEST_CASE("a report that nothing receives is refused", "[collide][parallel]") {
   const int code = run(setup, [&]() -> Task {
     const Collider collider = make_collider({});
     try {
-      co_await run_collision(collider, {});
+      co_await collider.run({});
     } catch (const Error& e) {
       error = e.what();
     }

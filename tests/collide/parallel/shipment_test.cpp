@@ -47,14 +47,14 @@ unsigned long long n_sent(std::int32_t n_houses, std::int32_t n_collisions) {
     Collider collider;
     ArrayProxy<Street> streets;
     co_await epoch([&] {
-      collider = make_collider({.size = {2, 2, 2}});
+      collider = make_collider({.voxel_size = {2, 2, 2}});
       streets = create<Street>(range(2));
     });
     // No pair leaves the PE that finds it: PE 0, which has most of the objects.
     const Report report{report_to<&Street::receive>(streets), {}, Receivers::one_owner};
     for (std::int32_t i = 0; i < n_collisions; ++i) {
       co_await epoch([&] { streets.broadcast<&Street::submit>(collider, n_houses); });
-      co_await run_collision(collider, report);
+      co_await collider.run(report);
     }
     n_pairs = co_await streets.reduce<&Street::count>();
   };

@@ -16,6 +16,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <string>
 #include <utility>
@@ -111,7 +112,7 @@ class Mover : public Chare<Mover> {
   }
   void give_refused(Callback<std::string> target) { contribute(max, refused_, std::move(target)); }
   Task collide(Collider collider, Report report, Callback<void> taken) {
-    co_await run_collision(collider, report, taken);
+    co_await collider.run(report, taken);
   }
   /// The boxes of a step are submitted as soon as those of the one before are taken.
   Task collide_in_a_row(Collider collider, Report report, std::int32_t n_steps) {
@@ -171,7 +172,7 @@ Task end(const Movers& movers, Outcome& outcome) {
 
 ColliderOptions with_slack(const Moving& scene) {
   const double size = scene.voxel_size;
-  return {.size = {size, size, size}, .rules = scene.rules, .slack = slack * scene.scale};
+  return {.voxel_size = {size, size, size}, .rules = scene.rules, .slack = slack * scene.scale};
 }
 
 Task collide_steps(const Moving& scene, std::int32_t n_steps, Outcome& outcome) {
@@ -179,11 +180,9 @@ Task collide_steps(const Moving& scene, std::int32_t n_steps, Outcome& outcome) 
   co_await begin(scene, with_slack(scene), movers);
   for (std::int32_t step = 0; step < n_steps; ++step) {
     co_await epoch([&] { movers.clients.broadcast<&Mover::submit>(movers.collider, step); });
-    co_await run_collision(movers.collider, movers.report);
+    co_await movers.collider.run(movers.report);
     co_await give_all(movers, outcome);
-    Future<CollisionStatistics> statistics;
-    report_statistics(movers.collider, statistics.callback());
-    outcome.statistics.push_back(co_await statistics);
+    outcome.statistics.push_back(co_await movers.collider.statistics());
   }
   co_await end(movers, outcome);
 }
@@ -208,8 +207,8 @@ Task collide_two_at_once(const std::array<Moving, 2>& scenes, std::int32_t n_ste
     co_await epoch([&] {
       for (const Movers& one : movers) one.clients.broadcast<&Mover::submit>(one.collider, step);
     });
-    Task first = run_collision(movers[0].collider, movers[0].report);
-    Task second = run_collision(movers[1].collider, movers[1].report);
+    Task first = movers[0].collider.run(movers[0].report);
+    Task second = movers[1].collider.run(movers[1].report);
     Task round = voxels.round();
     co_await first;
     co_await second;
@@ -357,7 +356,7 @@ TEST_CASE("more pairs than are kept are found without keeping them", "[collide][
     REQUIRE((outcome.steps.at(step) == all_pairs(scene, 0)));
     REQUIRE(outcome.statistics[step].n_kept == 0);
     REQUIRE(outcome.statistics[step].searched);
-    REQUIRE(outcome.statistics[step].n_voxels > 0);
+    REQUIRE(outcome.statistics[step].grid.n_voxels > 0);
   }
 }
 
@@ -420,18 +419,18 @@ TEST_CASE("colliders with a slack refuse capsules and coordinates without a cell
   const auto refused_and_again = [&]() -> Task {
     Movers movers;
     ColliderOptions options = with_slack(scene);
-    options.size = {1e-10, 1e-10, 1e-10};
+    options.voxel_size = {1e-10, 1e-10, 1e-10};
     co_await begin(scene, options, movers);
     for (int i = 0; i < 2; ++i) {
       error.clear();
       co_await epoch([&] { movers.clients.broadcast<&Mover::submit>(movers.collider, 0); });
       try {
-        co_await run_collision(movers.collider, movers.report);
+        co_await movers.collider.run(movers.report);
       } catch (const Error& caught) {
         error = caught.what();
       }
     }
-    co_await run_collision(movers.collider, movers.report);  // of nothing
+    co_await movers.collider.run(movers.report);  // of nothing
     co_await give_all(movers, after);
     co_await end(movers, after);
   };
@@ -455,7 +454,9 @@ TEST_CASE("boxes whose larger ones have no cells collide as without a slack", "[
     REQUIRE_FALSE(outcome.steps.at(step).empty());
     REQUIRE((outcome.steps.at(step) == all_pairs(scene, 0)));
     REQUIRE(outcome.statistics[step].n_kept == 0);
-    REQUIRE(outcome.statistics[step].voxel_size == scene.voxel_size);
+    // The boxes are larger than voxels of this size, so theirs are 8^level times as large.
+    const double scale = outcome.statistics[step].grid.voxel_size / scene.voxel_size;
+    REQUIRE((scale == std::exp2(std::ilogb(scale)) && std::ilogb(scale) % 3 == 0));
   }
 }
 

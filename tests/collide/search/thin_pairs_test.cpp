@@ -149,7 +149,7 @@ void check_thin(const std::vector<Object>& objects, double length) {
       REQUIRE((found_thin(all, all, longest, true, options) == of_models));
       options.models = two_models;
       REQUIRE((found_thin(all, all, longest, true, options) == of_two));
-      options.within_model = true;
+      options.within_model = WithinModel::test;
       REQUIRE((found_thin(all, all, longest, true, options) == of_all));
     }
   }

@@ -19,22 +19,14 @@ namespace {
 
 using Triangles = std::vector<std::array<VertexId, 3>>;
 
-Point minus(const Point& a, const Point& b) {
-  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-double dot(const Point& a, const Point& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-Point cross(const Point& a, const Point& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
 /// The sum of the solid angles over 4π (van Oosterom and Strackee 1983).
 double winding_by_angles(const std::vector<Point>& points, const Triangles& triangles,
                          const Point& p) {
   double sum = 0;
   for (const auto& t : triangles) {
-    const auto at = [&](std::size_t i) { return minus(points[static_cast<std::size_t>(t[i])], p); };
+    const auto at = [&](std::size_t i) {
+      return difference(points[static_cast<std::size_t>(t[i])], p);
+    };
     const Point a = at(0), b = at(1), c = at(2);
     const double la = std::sqrt(dot(a, a)), lb = std::sqrt(dot(b, b)), lc = std::sqrt(dot(c, c));
     sum += 2 * std::atan2(dot(a, cross(b, c)),

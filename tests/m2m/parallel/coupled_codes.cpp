@@ -483,7 +483,7 @@ Task retired() {
     co_await step(codes, k);
     Task apply = there.apply<&Left::out, &Right::in>();
     for (int call = 0; call < 2; ++call)  // the first one finds them used
-      co_await epoch([&] { collide::retire(there.collider()); });
+      co_await epoch([&] { there.collider().retire(); });
     co_await apply;
     co_await expect(codes.right, k);
     co_await there.search();

@@ -6,6 +6,7 @@
 #include "tests/support/catch.hpp"
 
 using namespace collide_scene;
+using tess::collide::WithinModel;
 
 namespace {
 
@@ -36,15 +37,15 @@ TEST_CASE("chares find the pairs of the serial face, on any number of PEs and an
           "[apps][collide_scene]") {
   for (const char* name : {"planes:1024", "boxes:500", "crowd:1024", "lshapes:20"})
     for (const bool exact : {false, true})
-      for (const bool self : {false, true}) {
+      for (const WithinModel within : {WithinModel::skip, WithinModel::test}) {
         const Scene scene = make_scene(name);
         if (exact && scene.triangles.empty()) continue;
-        const Rules rules{.triangles = exact, .within_model = self};
+        const Rules rules{.triangles = exact, .within_model = within};
         std::vector<ScenePair> pairs;
         const Answer want = collide_once(scene, rules, 2, &pairs).answer;
         std::ranges::sort(pairs);
         for (const char* machine : {"pes=1", "pes=3", "pes=4,seed=1", "pes=5,seed=2,migrate=0.1"}) {
-          INFO(name << " " << exact << self << " " << machine);
+          INFO(name << " " << exact << (within == WithinModel::test) << " " << machine);
           const OnChares got = collide_on_chares(scene, rules, machine);
           CHECK(got.step.answer == want);
           CHECK(got.pairs == pairs);
