@@ -307,4 +307,5 @@ def main():
     sys.exit(any(bug.verdict != "caught" for bug in chosen))
 
 
-main()
+if __name__ == "__main__":
+    main()
