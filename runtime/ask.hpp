@@ -155,9 +155,7 @@ class AskOf : public AskBase {
 
 /// The value that member function F replies; NoValue for none.
 template <auto F>
-using ReplyValue =
-    std::conditional_t<std::is_void_v<typename GivenBy<typename EntryTraits<F>::Result>::type>,
-                       NoValue, typename GivenBy<typename EntryTraits<F>::Result>::type>;
+using ReplyValue = ValueOrNone<typename GivenBy<typename EntryTraits<F>::Result>::type>;
 
 template <class Place, class Tuple>
 struct WithPlace;
