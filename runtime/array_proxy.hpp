@@ -125,14 +125,9 @@ class ArrayProxy {
   void broadcast_as(Of of, Args&&... args) const {
     static_assert(detail::check_broadcast<C, F, Args...>());
     using Arguments = typename detail::EntryTraits<F>::Arguments;
-    auto arguments = detail::as_parameters<Arguments>(std::forward<Args>(args)...);
-    if constexpr (std::is_same_v<Of, Priority>) {
-      detail::start_broadcast(id_, detail::SharedCall(new detail::PrioritisedCallOfAll<C, F>(
-                                       of, std::move(arguments))));
-    } else {
-      detail::start_broadcast(
-          id_, detail::SharedCall(new detail::CallOfAll<C, F>(std::move(arguments))));
-    }
+    detail::start_broadcast(
+        id_, detail::SharedCall(new detail::CallOfAll<C, Of, F>(
+                 of, detail::as_parameters<Arguments>(std::forward<Args>(args)...))));
   }
 
   template <auto F, class T>

@@ -16,13 +16,6 @@
 
 namespace tess {
 
-namespace detail {
-
-/// The priority of a message is that which its class gives the entry method.
-struct OfEntry {};
-
-}  // namespace detail
-
 /// The proxy of one element, by its index. The element need not exist. A class that has a proxy of
 /// its own elements as a member names the index: ElementProxy<Node, Index1>.
 template <class C, class IndexType = typename C::Index>
@@ -58,12 +51,7 @@ class ElementProxy {
   /// give the call a priority (EntryAttributes).
   template <auto F, class... Args>
   [[nodiscard]] Ask<C, F> ask(Args&&... args) const {
-    constexpr std::int64_t priority = detail::entry_rule<C, F>.priority;
-    if constexpr (priority == 0) {
-      return ask_from<F>(detail::ReplyPlace(), std::forward<Args>(args)...);
-    } else {
-      return ask_from<F>(detail::PrioritisedPlace{{}, priority}, std::forward<Args>(args)...);
-    }
+    return ask_as<F>(detail::OfEntry(), std::forward<Args>(args)...);
   }
   /// Sends a message. If there is no element, it is created on this PE; of several PEs that demand
   /// it at once exactly one creates it.
@@ -147,14 +135,15 @@ class ElementProxy {
 
   friend class PrioritisedElement<C, Index>;
 
-  template <auto F, class Place, class... Args>
-  [[nodiscard]] Ask<C, F> ask_from(Place place, Args&&... args) const {
+  // `Of` is OfEntry, or the Priority that the sender gave.
+
+  template <auto F, class Of, class... Args>
+  [[nodiscard]] Ask<C, F> ask_as(Of of, Args&&... args) const {
     static_assert(detail::check_ask<C, F, Args...>());
     Pe& pe = current_pe();
     Ask<C, F> reply(collection_, index_);
-    static_cast<detail::ReplyPlace&>(place) = reply.place();
-    auto* message = detail::AskCall<C, Place, F>::make(pe, collection_, index_, place,
-                                                       std::forward<Args>(args)...);
+    auto* message = detail::AskCall<C, Of, F>::make(pe, collection_, index_, of, reply.place(),
+                                                    std::forward<Args>(args)...);
     if constexpr (detail::entry_rule<C, F>.creates != detail::Creates::no) {
       static_assert(check_on_demand());
       message->demand = demand_of<F>;
@@ -163,8 +152,6 @@ class ElementProxy {
     post_message(pe, message);
     return reply;
   }
-
-  // `Of` is OfEntry, or the Priority that the sender gave.
 
   template <auto F, class Of, class... Args>
   void send_as(Of of, Args&&... args) const {
@@ -204,14 +191,8 @@ class ElementProxy {
     static_assert(detail::check_entry<C, F, Args...>());
     Pe& pe = current_pe();
     auto* message = [&]<class... P>(std::tuple<P...>*) {
-      if constexpr (std::is_same_v<Of, Priority>) {
-        return detail::PrioritisedCall<C, F>::make(
-            pe, collection_, index_, of.value,
-            detail::as_parameter<P>(std::forward<Args>(args))...);
-      } else {
-        return detail::Call<C, F>::make(pe, collection_, index_,
-                                        detail::as_parameter<P>(std::forward<Args>(args))...);
-      }
+      return detail::Call<C, Of, F>::make(pe, collection_, index_, of,
+                                          detail::as_parameter<P>(std::forward<Args>(args))...);
     }(static_cast<typename detail::EntryTraits<F>::Arguments*>(nullptr));
     message->demand = demand;
     message->ask = demand == detail::Demand::here;
@@ -237,7 +218,7 @@ class ElementProxy {
     auto arguments = detail::as_parameters<typename detail::EntryTraits<F>::Arguments>(
         std::forward<Args>(args)...);
     weigh(pe, arguments);
-    array->run_now(*element, detail::Call<C, F>::entry, [&] {
+    array->run_now(*element, detail::Call<C, detail::OfEntry, F>::entry, [&] {
       std::apply(
           [element](auto&... argument) {
             (void)(static_cast<C*>(element)->*F)(std::move(argument)...);

@@ -78,79 +78,11 @@ consteval bool check_interface() {
   return true;
 }
 
-/// A call of member function F of the interface of an element.
-template <class I, class IndexType, auto F>
-struct InterfaceCall final
-    : TypedMessage<InterfaceCall<I, IndexType, F>, Implements<I, IndexType>,
-                   typename WithPlace<FacePointer<I>, typename WithPriority<typename EntryTraits<
-                                                          F>::Arguments>::type>::Type> {
-  using Base = TypedMessage<
-      InterfaceCall, Implements<I, IndexType>,
-      typename WithPlace<FacePointer<I>,
-                         typename WithPriority<typename EntryTraits<F>::Arguments>::type>::Type>;
-  using Base::Base;
-
-  static void invoke(Element& element, ElementMessage<IndexType>& envelope) {
-    std::apply(
-        [&element](const FacePointer<I>& face, std::int64_t /*priority*/, auto&... argument) {
-          (void)(face->cast(element).*F)(std::move(argument)...);
-        },
-        static_cast<InterfaceCall&>(envelope).arguments);
-  }
-  static std::int64_t priority_of(const Envelope& envelope) {
-    return std::get<1>(static_cast<const InterfaceCall&>(envelope).arguments);
-  }
-  static inline const ElementAction<IndexType> entry{std::type_identity<InterfaceCall>{},
-                                                     &InterfaceCall::invoke};
-};
-
-/// An ask through an interface.
+/// The head of a call through an interface: how the element is seen, and the priority.
 template <class I>
-struct InterfacePlace : PrioritisedPlace {
+struct Through {
   FacePointer<I> face;
-  template <class>
-  [[nodiscard]] I& called(Element& element) const {
-    return face->cast(element);
-  }
-  template <class Ar>
-  void serialize(Ar& ar) {
-    PrioritisedPlace::serialize(ar);
-    ar(face);
-  }
-};
-
-/// A call of member function F of the interfaces of all elements.
-template <class I, auto F>
-class InterfaceCallOfAll final : public BroadcastCall {
- public:
-  using Arguments = typename EntryTraits<F>::Arguments;
-
-  InterfaceCallOfAll(FacePointer<I> face, std::int64_t priority, Arguments arguments)
-      : face_(face), priority_(priority), arguments_(std::move(arguments)) {}
-
-  [[nodiscard]] const BroadcastKind& kind() const override { return kind_; }
-  [[nodiscard]] const Action& action() const override { return action_; }
-  [[nodiscard]] std::int64_t priority() const override { return priority_; }
-  void invoke(Element& element) const override {
-    std::apply([&](const auto&... argument) { (void)(face_->cast(element).*F)(argument...); },
-               arguments_);
-  }
-  void pack(Writer& ar) const override { ar(face_, priority_, arguments_); }
-
- private:
-  static SharedCall unpack(Reader& ar) {
-    const auto face = ar.take<FacePointer<I>>();
-    const auto priority = ar.take<std::int64_t>();
-    return SharedCall(new InterfaceCallOfAll(face, priority, ar.take<Arguments>()));
-  }
-  static void never(Pe& /*pe*/, Envelope* /*envelope*/) {}
-  static inline const BroadcastKind kind_{naming::name_of<InterfaceCallOfAll>(), &unpack};
-  static inline const Action action_{
-      naming::name_of<InterfaceCallOfAll*>(), nullptr, nullptr, nullptr, nullptr, Traffic::user};
-
-  FacePointer<I> face_;
-  std::int64_t priority_;
-  Arguments arguments_;
+  Priority priority;
 };
 
 }  // namespace detail
@@ -164,6 +96,9 @@ class InterfaceArray;
 /// be any class with virtual functions; a priority in its EntryAttributes holds for its messages.
 template <class I, class IndexType = Index1>
 class InterfaceProxy {
+  using Class = detail::Implements<I, IndexType>;
+  using Head = detail::Through<I>;
+
  public:
   using Index = IndexType;
 
@@ -195,7 +130,7 @@ class InterfaceProxy {
   }
   /// As ElementProxy::ask().
   template <auto F, class... Args>
-  [[nodiscard]] Ask<detail::Implements<I, IndexType>, F> ask(Args&&... args) const {
+  [[nodiscard]] Ask<Class, F> ask(Args&&... args) const {
     return ask_with<F>(Priority{detail::entry_rule<I, F>.priority}, std::forward<Args>(args)...);
   }
   /// The same element for messages with a priority.
@@ -234,8 +169,8 @@ class InterfaceProxy {
                   "an interface creates no element: its class is not known");
     Pe& pe = current_pe();
     auto* message = [&]<class... P>(std::tuple<P...>*) {
-      return detail::InterfaceCall<I, IndexType, F>::make(
-          pe, collection(), index_, face_, priority.value,
+      return detail::Call<Class, Head, F>::make(
+          pe, collection(), index_, Head{face_, priority},
           detail::as_parameter<P>(std::forward<Args>(args))...);
     }(static_cast<typename detail::EntryTraits<F>::Arguments*>(nullptr));
     if (detail::Meter* meter = pe.meter(); meter != nullptr && meter->weighs_messages())
@@ -245,17 +180,12 @@ class InterfaceProxy {
     post(pe, message);
   }
   template <auto F, class... Args>
-  [[nodiscard]] Ask<detail::Implements<I, IndexType>, F> ask_with(Priority priority,
-                                                                  Args&&... args) const {
+  [[nodiscard]] Ask<Class, F> ask_with(Priority priority, Args&&... args) const {
     static_assert(detail::check_ask<I, F, Args...>());
     Pe& pe = current_pe();
-    Ask<detail::Implements<I, IndexType>, F> reply(collection(), index_);
-    detail::InterfacePlace<I> place;
-    static_cast<detail::ReplyPlace&>(place) = reply.place();
-    place.face = face_;
-    place.priority = priority.value;
-    using Call = detail::AskCall<detail::Implements<I, IndexType>, detail::InterfacePlace<I>, F>;
-    post(pe, Call::make(pe, collection_, index_, place, std::forward<Args>(args)...));
+    Ask<Class, F> reply(collection(), index_);
+    post(pe, detail::AskCall<Class, Head, F>::make(pe, collection_, index_, Head{face_, priority},
+                                                   reply.place(), std::forward<Args>(args)...));
     return reply;
   }
   [[nodiscard]] CollectionId collection() const {
@@ -340,8 +270,8 @@ class InterfaceArray {
     TESS_CHECK(!face_.empty(), "a broadcast to an empty InterfaceArray<", name_of_type<I>,
                ">: assign an array to it first");
     detail::start_broadcast(id_,
-                            detail::SharedCall(new detail::InterfaceCallOfAll<I, F>(
-                                face_, detail::entry_rule<I, F>.priority,
+                            detail::SharedCall(new detail::CallOfAll<I, detail::Through<I>, F>(
+                                {face_, Priority{detail::entry_rule<I, F>.priority}},
                                 detail::as_parameters<Arguments>(std::forward<Args>(args)...))));
   }
   /// As ArrayProxy::reduce(); F is a member function of the interface.

@@ -41,8 +41,8 @@ class SectionProxy {
     Pe& pe = current_pe();
     detail::SectionCall call;
     call.numbered.epoch = pe.context().epoch;
-    call.numbered.call = detail::SharedCall(
-        new detail::CallOfAll<C, F>(detail::as_parameters<Arguments>(std::forward<Args>(args)...)));
+    call.numbered.call = detail::SharedCall(new detail::CallOfAll<C, detail::OfEntry, F>(
+        {}, detail::as_parameters<Arguments>(std::forward<Args>(args)...)));
     if (pe.context().led_by != 0) call.led_by = detail::Collection::led_by(pe.context(), array_);
     pe.completion().sent(call.numbered.epoch);
     detail::send_to_collection<&Lists::start_arrives>(pe, array_, root(pe), {id_, std::move(call)});
