@@ -16,6 +16,42 @@
 
 namespace tess {
 
+namespace detail {
+
+/// A target for results: entry method F of what a proxy stands for.
+template <class Proxy, auto F>
+struct TargetOf {
+  using T = typename decltype(target_value<F, NoValue>())::type;
+
+  /// The fields are those of the proxy, in the order of its serialize().
+  template <class... Fields>
+  [[nodiscard]] static auto make(const Fields&... fields) {
+    if constexpr ((Bitwise<Fields> && ...)) {
+      return make_target<T>(kind, std::in_place, fields...);
+    } else {
+      return make_target<T>(kind, to_bytes(std::tuple(fields...)));
+    }
+  }
+
+ private:
+  static void call(const Callback<T>& callback, T&& value) {
+    const auto proxy = from_bytes<Proxy>(callback.where());
+    if constexpr (std::is_same_v<T, NoValue>) {
+      proxy.template give<F>();
+    } else {
+      proxy.template give<F>(std::move(value));
+    }
+  }
+  static std::string describe(const Callback<T>& callback) {
+    return text(plain_name(naming::value<F>()), " of ",
+                from_bytes<Proxy>(callback.where()).in_words());
+  }
+  static inline const typename Callback<T>::Kind kind{naming::name_of<TargetOf>(), &call,
+                                                      &describe};
+};
+
+}  // namespace detail
+
 /// The proxy of one element, by its index. The element need not exist. A class that has a proxy of
 /// its own elements as a member names the index: ElementProxy<Node, Index1>.
 template <class C, class IndexType = typename C::Index>
@@ -110,12 +146,7 @@ class ElementProxy {
   /// A target for results: entry method F of this element.
   template <auto F>
   [[nodiscard]] auto target() const {
-    using T = typename decltype(detail::target_value<F, NoValue>())::type;
-    if constexpr (Bitwise<Index>) {
-      return detail::make_target<T>(target_kind<F, T>, std::in_place, collection_, index_);
-    } else {
-      return detail::make_target<T>(target_kind<F, T>, to_bytes(std::tuple(collection_, index_)));
-    }
+    return detail::TargetOf<ElementProxy, F>::make(collection_, index_);
   }
 
   friend auto operator<=>(const ElementProxy&, const ElementProxy&) = default;
@@ -134,6 +165,8 @@ class ElementProxy {
   }
 
   friend class PrioritisedElement<C, Index>;
+  template <class, auto>
+  friend struct detail::TargetOf;
 
   // `Of` is OfEntry, or the Priority that the sender gave.
 
@@ -261,26 +294,13 @@ class ElementProxy {
     post_message(pe, Kind::make(pe, collection_, index_, args...));
   }
 
-  template <auto F, class T>
-  static void call_target(const Callback<T>& callback, T&& value) {
-    const auto [collection, index] = from_bytes<std::tuple<CollectionId, Index>>(callback.where());
-    const ElementProxy element(collection, index);
-    if constexpr (std::is_same_v<T, NoValue>) {
-      element.template queue<F>(detail::OfEntry());
-    } else {
-      element.template queue<F>(detail::OfEntry(), std::forward<T>(value));
-    }
+  template <auto F, class... Value>
+  void give(Value&&... value) const {
+    queue<F>(detail::OfEntry(), std::forward<Value>(value)...);
   }
-  template <auto F, class T>
-  static std::string describe_target(const Callback<T>& callback) {
-    const auto [collection, index] = from_bytes<std::tuple<CollectionId, Index>>(callback.where());
-    return text(plain_name(naming::value<F>()), " of ", plain_name(name_of_type<C>),
-                index_text(index));
+  [[nodiscard]] std::string in_words() const {
+    return text(plain_name(name_of_type<C>), index_text(index_));
   }
-  template <auto F, class T>
-  static inline const typename Callback<T>::Kind target_kind{
-      naming::name_of<&ElementProxy::call_target<F, T>>(), &ElementProxy::call_target<F, T>,
-      &ElementProxy::describe_target<F, T>};
 
   CollectionId collection_{};
   Index index_{};

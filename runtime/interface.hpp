@@ -140,8 +140,7 @@ class InterfaceProxy {
   /// A target for results: member function F of the interface.
   template <auto F>
   [[nodiscard]] auto target() const {
-    using T = typename decltype(detail::target_value<F, NoValue>())::type;
-    return detail::make_target<T>(target_kind<F, T>, to_bytes(*this));
+    return detail::TargetOf<InterfaceProxy, F>::make(collection_, index_, face_);
   }
 
   [[nodiscard]] const Index& index() const { return index_; }
@@ -158,6 +157,8 @@ class InterfaceProxy {
  private:
   friend class PrioritisedInterface<I, IndexType>;
   friend class InterfaceArray<I, IndexType>;
+  template <class, auto>
+  friend struct detail::TargetOf;
 
   InterfaceProxy(CollectionId collection, const Index& index, detail::FacePointer<I> face)
       : collection_(collection), index_(index), face_(face) {}
@@ -202,24 +203,13 @@ class InterfaceProxy {
       pe.send_here(message);  // it waits until the array is known here
     }
   }
-  template <auto F, class T>
-  static void call_target(const Callback<T>& callback, T&& value) {
-    const auto element = from_bytes<InterfaceProxy>(callback.where());
-    if constexpr (std::is_same_v<T, NoValue>) {
-      element.template send<F>();
-    } else {
-      element.template send<F>(std::forward<T>(value));
-    }
+  template <auto F, class... Value>
+  void give(Value&&... value) const {
+    send<F>(std::forward<Value>(value)...);
   }
-  template <auto F, class T>
-  static std::string describe_target(const Callback<T>& callback) {
-    return text(plain_name(naming::value<F>()), " of ", plain_name(name_of_type<I>),
-                index_text(from_bytes<InterfaceProxy>(callback.where()).index_));
+  [[nodiscard]] std::string in_words() const {
+    return text(plain_name(name_of_type<I>), index_text(index_));
   }
-  template <auto F, class T>
-  static inline const typename Callback<T>::Kind target_kind{
-      naming::name_of<&InterfaceProxy::call_target<F, T>>(), &InterfaceProxy::call_target<F, T>,
-      &InterfaceProxy::describe_target<F, T>};
 
   CollectionId collection_{};
   Index index_{};
