@@ -13,18 +13,6 @@
 
 namespace tess {
 
-namespace detail {
-/// Calls entry method F of all elements with the value of a callback, which may be no value.
-template <auto F, class Proxy, class T>
-void broadcast_value(const Proxy& all, T&& value) {
-  if constexpr (std::is_same_v<T, NoValue>) {
-    all.template broadcast<F>();
-  } else {
-    all.template broadcast<F>(std::forward<T>(value));
-  }
-}
-}  // namespace detail
-
 /// The proxy of a whole array.
 template <class C>
 class ArrayProxy : public detail::WholeHandle<ArrayProxy<C>> {
@@ -99,8 +87,7 @@ class ArrayProxy : public detail::WholeHandle<ArrayProxy<C>> {
   /// A target for results: entry method F of all elements.
   template <auto F>
   [[nodiscard]] auto target() const {
-    using T = typename decltype(detail::target_value<F, NoValue>())::type;
-    return detail::make_target<T>(target_kind<F, T>, std::in_place, id_);
+    return detail::TargetOf<ArrayProxy, F>::make(id_);
   }
 
   /// The part of the array on this PE with its local elements, for libraries and tests.
@@ -113,35 +100,25 @@ class ArrayProxy : public detail::WholeHandle<ArrayProxy<C>> {
 
  private:
   friend class PrioritisedArray<C>;
+  template <class, auto>
+  friend struct detail::TargetOf;
 
   template <auto F, class Of, class... Args>
   void broadcast_as(Of of, Args&&... args) const {
     static_assert(detail::check_broadcast<C, F, Args...>());
     using Arguments = typename detail::EntryTraits<F>::Arguments;
-    auto arguments = detail::as_parameters<Arguments>(std::forward<Args>(args)...);
-    if constexpr (std::is_same_v<Of, Priority>) {
-      detail::start_broadcast(id_, detail::SharedCall(new detail::PrioritisedCallOfAll<C, F>(
-                                       of, std::move(arguments))));
-    } else {
-      detail::start_broadcast(
-          id_, detail::SharedCall(new detail::CallOfAll<C, F>(std::move(arguments))));
-    }
+    detail::start_broadcast(
+        id_, detail::SharedCall(new detail::CallOfAll<C, Of, F>(
+                 of, detail::as_parameters<Arguments>(std::forward<Args>(args)...))));
   }
 
-  template <auto F, class T>
-  static void call_target(const Callback<T>& callback, T&& value) {
-    detail::broadcast_value<F>(ArrayProxy(from_bytes<CollectionId>(callback.where())),
-                               std::forward<T>(value));
+  template <auto F, class... Value>
+  void give(Value&&... value) const {
+    broadcast<F>(std::forward<Value>(value)...);
   }
-  template <auto F, class T>
-  static std::string describe_target(const Callback<T>& /*callback*/) {
-    return text(plain_name(naming::value<F>()), " of all elements of ",
-                plain_name(name_of_type<C>));
+  [[nodiscard]] std::string in_words() const {
+    return "all elements of " + plain_name(name_of_type<C>);
   }
-  template <auto F, class T>
-  static inline const typename Callback<T>::Kind target_kind{
-      naming::name_of<&ArrayProxy::call_target<F, T>>(), &ArrayProxy::call_target<F, T>,
-      &ArrayProxy::describe_target<F, T>};
 
   using detail::WholeHandle<ArrayProxy>::id_;
 };

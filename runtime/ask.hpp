@@ -37,19 +37,6 @@ namespace detail {
 struct ReplyPlace {
   std::uint64_t id = 0;
   PeId pe{};
-  /// The object whose member function is called.
-  template <class C>
-  [[nodiscard]] C& called(Element& element) const {
-    return static_cast<C&>(element);
-  }
-};
-/// The same, and the priority of the call.
-struct PrioritisedPlace : ReplyPlace {
-  std::int64_t priority = 0;
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(id, pe, priority);
-  }
 };
 
 /// An error as a reply carries it.
@@ -155,25 +142,12 @@ class AskOf : public AskBase {
 
 /// The value that member function F replies; NoValue for none.
 template <auto F>
-using ReplyValue =
-    std::conditional_t<std::is_void_v<typename GivenBy<typename EntryTraits<F>::Result>::type>,
-                       NoValue, typename GivenBy<typename EntryTraits<F>::Result>::type>;
+using ReplyValue = ValueOrNone<typename GivenBy<typename EntryTraits<F>::Result>::type>;
 
-template <class Place, class Tuple>
-struct WithPlace;
-template <class Place, class... P>
-struct WithPlace<Place, std::tuple<P...>> {
-  using Type = std::tuple<Place, P...>;
-};
-
-/// A call of member function F of an element of C that replies. Its first argument is a Place: a
-/// ReplyPlace, or what derives from it.
-template <class C, class Place, auto F>
-struct AskCall final
-    : TypedMessage<AskCall<C, Place, F>, C,
-                   typename WithPlace<Place, typename EntryTraits<F>::Arguments>::Type> {
-  using Base =
-      TypedMessage<AskCall, C, typename WithPlace<Place, typename EntryTraits<F>::Arguments>::Type>;
+/// A call of member function F of an element of C that replies.
+template <class C, class Head, auto F>
+struct AskCall final : TypedMessage<AskCall<C, Head, F>, C, ArgumentsBehind<F, Head, ReplyPlace>> {
+  using Base = TypedMessage<AskCall, C, ArgumentsBehind<F, Head, ReplyPlace>>;
   using Index = typename C::Index;
   using Value = ReplyValue<F>;
   using Result = typename EntryTraits<F>::Result;
@@ -182,8 +156,8 @@ struct AskCall final
   static void invoke(Element& element, ElementMessage<Index>& envelope) {
     auto& message = static_cast<AskCall&>(envelope);
     std::apply(
-        [&](const Place& to, auto&... argument) {
-          auto& chare = to.template called<C>(element);
+        [&](const Head& head, const ReplyPlace& to, auto&... argument) {
+          auto& chare = called<C>(head, element);
           if constexpr (GivenBy<Result>::is_task) {
             (void)serve(&chare, to, std::move(argument)...);
           } else {
@@ -208,7 +182,7 @@ struct AskCall final
   static void undelivered(Pe& pe, ElementMessage<Index>& envelope) {
     auto& message = static_cast<AskCall&>(envelope);
     AskOf<Value>::answer(
-        pe, message.epoch, std::get<0>(message.arguments), std::nullopt,
+        pe, message.epoch, std::get<1>(message.arguments), std::nullopt,
         Failure{ErrorCode::out_of_range, text(name(message.index),
                                               " is asked, but the element was destroyed: ask only "
                                               "elements that exist, or catch this error")});
@@ -220,9 +194,9 @@ struct AskCall final
                 colons == std::string::npos ? method : method.substr(colons + 2));
   }
   static std::int64_t priority_of(const Envelope& envelope)
-    requires std::is_base_of_v<PrioritisedPlace, Place>
+    requires MayHavePriority<C, Head, F>
   {
-    return std::get<0>(static_cast<const AskCall&>(envelope).arguments).priority;
+    return priority_by<C, F>(std::get<0>(static_cast<const AskCall&>(envelope).arguments));
   }
   static inline const ElementAction<Index> entry{std::type_identity<AskCall>{}, &AskCall::invoke,
                                                  nullptr, Traffic::user, &AskCall::undelivered};
@@ -284,7 +258,7 @@ class [[nodiscard]] Ask final : public detail::AskOf<detail::ReplyValue<F>> {
   }
   [[nodiscard]] detail::WaitReason waits_for() const override {
     return this->reply_of(collection_, IndexHash<Index>()(index_),
-                          detail::AskCall<C, detail::ReplyPlace, F>::name(index_));
+                          detail::AskCall<C, detail::OfEntry, F>::name(index_));
   }
 
  private:

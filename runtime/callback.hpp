@@ -15,6 +15,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -165,6 +166,10 @@ class Callback<void> {
 };
 
 namespace detail {
+/// T, or NoValue in place of void.
+template <class T>
+using ValueOrNone = std::conditional_t<std::is_void_v<T>, NoValue, T>;
+
 /// The target of values of type T, made in place: a copy of bytes that were just written would
 /// stall.
 template <class T, class... Where>

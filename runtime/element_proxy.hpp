@@ -19,8 +19,37 @@ namespace tess {
 
 namespace detail {
 
-/// The priority of a message is that which its class gives the entry method.
-struct OfEntry {};
+/// A target for results: entry method F of what a proxy stands for.
+template <class Proxy, auto F>
+struct TargetOf {
+  using T = typename decltype(target_value<F, NoValue>())::type;
+
+  /// The fields are those of the proxy, in the order of its serialize().
+  template <class... Fields>
+  [[nodiscard]] static auto make(const Fields&... fields) {
+    if constexpr ((Bitwise<Fields> && ...)) {
+      return make_target<T>(kind, std::in_place, fields...);
+    } else {
+      return make_target<T>(kind, to_bytes(std::tuple(fields...)));
+    }
+  }
+
+ private:
+  static void call(const Callback<T>& callback, T&& value) {
+    const auto proxy = from_bytes<Proxy>(callback.where());
+    if constexpr (std::is_same_v<T, NoValue>) {
+      proxy.template give<F>();
+    } else {
+      proxy.template give<F>(std::move(value));
+    }
+  }
+  static std::string describe(const Callback<T>& callback) {
+    return text(plain_name(naming::value<F>()), " of ",
+                from_bytes<Proxy>(callback.where()).in_words());
+  }
+  static inline const typename Callback<T>::Kind kind{naming::name_of<TargetOf>(), &call,
+                                                      &describe};
+};
 
 }  // namespace detail
 
@@ -59,12 +88,7 @@ class ElementProxy {
   /// give the call a priority (EntryAttributes).
   template <auto F, class... Args>
   [[nodiscard]] Ask<C, F> ask(Args&&... args) const {
-    constexpr std::int64_t priority = detail::entry_rule<C, F>.priority;
-    if constexpr (priority == 0) {
-      return ask_from<F>(detail::ReplyPlace(), std::forward<Args>(args)...);
-    } else {
-      return ask_from<F>(detail::PrioritisedPlace{{}, priority}, std::forward<Args>(args)...);
-    }
+    return ask_as<F>(detail::OfEntry(), std::forward<Args>(args)...);
   }
   /// Sends a message. If there is no element, it is created on this PE; of several PEs that demand
   /// it at once exactly one creates it.
@@ -123,12 +147,7 @@ class ElementProxy {
   /// A target for results: entry method F of this element.
   template <auto F>
   [[nodiscard]] auto target() const {
-    using T = typename decltype(detail::target_value<F, NoValue>())::type;
-    if constexpr (Bitwise<Index>) {
-      return detail::make_target<T>(target_kind<F, T>, std::in_place, collection_, index_);
-    } else {
-      return detail::make_target<T>(target_kind<F, T>, to_bytes(std::tuple(collection_, index_)));
-    }
+    return detail::TargetOf<ElementProxy, F>::make(collection_, index_);
   }
 
   friend auto operator<=>(const ElementProxy&, const ElementProxy&) = default;
@@ -147,15 +166,18 @@ class ElementProxy {
   }
 
   friend class PrioritisedElement<C, Index>;
+  template <class, auto>
+  friend struct detail::TargetOf;
 
-  template <auto F, class Place, class... Args>
-  [[nodiscard]] Ask<C, F> ask_from(Place place, Args&&... args) const {
+  // `Of` is OfEntry, or the Priority that the sender gave.
+
+  template <auto F, class Of, class... Args>
+  [[nodiscard]] Ask<C, F> ask_as(Of of, Args&&... args) const {
     static_assert(detail::check_ask<C, F, Args...>());
     Pe& pe = current_pe();
     Ask<C, F> reply(collection_, index_);
-    static_cast<detail::ReplyPlace&>(place) = reply.place();
-    auto* message = detail::AskCall<C, Place, F>::make(pe, collection_, index_, place,
-                                                       std::forward<Args>(args)...);
+    auto* message = detail::AskCall<C, Of, F>::make(pe, collection_, index_, of, reply.place(),
+                                                    std::forward<Args>(args)...);
     if constexpr (detail::entry_rule<C, F>.creates != detail::Creates::no) {
       static_assert(check_on_demand());
       message->demand = demand_of<F>;
@@ -164,8 +186,6 @@ class ElementProxy {
     post_message(pe, message);
     return reply;
   }
-
-  // `Of` is OfEntry, or the Priority that the sender gave.
 
   template <auto F, class Of, class... Args>
   void send_as(Of of, Args&&... args) const {
@@ -205,14 +225,8 @@ class ElementProxy {
     static_assert(detail::check_entry<C, F, Args...>());
     Pe& pe = current_pe();
     auto* message = [&]<class... P>(std::tuple<P...>*) {
-      if constexpr (std::is_same_v<Of, Priority>) {
-        return detail::PrioritisedCall<C, F>::make(
-            pe, collection_, index_, of.value,
-            detail::as_parameter<P>(std::forward<Args>(args))...);
-      } else {
-        return detail::Call<C, F>::make(pe, collection_, index_,
-                                        detail::as_parameter<P>(std::forward<Args>(args))...);
-      }
+      return detail::Call<C, Of, F>::make(pe, collection_, index_, of,
+                                          detail::as_parameter<P>(std::forward<Args>(args))...);
     }(static_cast<typename detail::EntryTraits<F>::Arguments*>(nullptr));
     message->demand = demand;
     message->ask = demand == detail::Demand::here;
@@ -238,7 +252,7 @@ class ElementProxy {
     auto arguments = detail::as_parameters<typename detail::EntryTraits<F>::Arguments>(
         std::forward<Args>(args)...);
     weigh(pe, arguments);
-    array->run_now(*element, detail::Call<C, F>::entry, [&] {
+    array->run_now(*element, detail::Call<C, detail::OfEntry, F>::entry, [&] {
       std::apply(
           [element](auto&... argument) {
             (void)(static_cast<C*>(element)->*F)(std::move(argument)...);
@@ -281,26 +295,13 @@ class ElementProxy {
     post_message(pe, Kind::make(pe, collection_, index_, args...));
   }
 
-  template <auto F, class T>
-  static void call_target(const Callback<T>& callback, T&& value) {
-    const auto [collection, index] = from_bytes<std::tuple<CollectionId, Index>>(callback.where());
-    const ElementProxy element(collection, index);
-    if constexpr (std::is_same_v<T, NoValue>) {
-      element.template queue<F>(detail::OfEntry());
-    } else {
-      element.template queue<F>(detail::OfEntry(), std::forward<T>(value));
-    }
+  template <auto F, class... Value>
+  void give(Value&&... value) const {
+    queue<F>(detail::OfEntry(), std::forward<Value>(value)...);
   }
-  template <auto F, class T>
-  static std::string describe_target(const Callback<T>& callback) {
-    const auto [collection, index] = from_bytes<std::tuple<CollectionId, Index>>(callback.where());
-    return text(plain_name(naming::value<F>()), " of ", plain_name(name_of_type<C>),
-                index_text(index));
+  [[nodiscard]] std::string in_words() const {
+    return text(plain_name(name_of_type<C>), index_text(index_));
   }
-  template <auto F, class T>
-  static inline const typename Callback<T>::Kind target_kind{
-      naming::name_of<&ElementProxy::call_target<F, T>>(), &ElementProxy::call_target<F, T>,
-      &ElementProxy::describe_target<F, T>};
 
   CollectionId collection_{};
   Index index_{};

@@ -32,7 +32,7 @@ namespace tess {
 
 template <class T>
 class Future {
-  using Value = std::conditional_t<std::is_void_v<T>, NoValue, T>;
+  using Value = detail::ValueOrNone<T>;
 
  public:
   Future() {

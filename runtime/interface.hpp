@@ -78,79 +78,11 @@ consteval bool check_interface() {
   return true;
 }
 
-/// A call of member function F of the interface of an element.
-template <class I, class IndexType, auto F>
-struct InterfaceCall final
-    : TypedMessage<InterfaceCall<I, IndexType, F>, Implements<I, IndexType>,
-                   typename WithPlace<FacePointer<I>, typename WithPriority<typename EntryTraits<
-                                                          F>::Arguments>::type>::Type> {
-  using Base = TypedMessage<
-      InterfaceCall, Implements<I, IndexType>,
-      typename WithPlace<FacePointer<I>,
-                         typename WithPriority<typename EntryTraits<F>::Arguments>::type>::Type>;
-  using Base::Base;
-
-  static void invoke(Element& element, ElementMessage<IndexType>& envelope) {
-    std::apply(
-        [&element](const FacePointer<I>& face, std::int64_t /*priority*/, auto&... argument) {
-          (void)(face->cast(element).*F)(std::move(argument)...);
-        },
-        static_cast<InterfaceCall&>(envelope).arguments);
-  }
-  static std::int64_t priority_of(const Envelope& envelope) {
-    return std::get<1>(static_cast<const InterfaceCall&>(envelope).arguments);
-  }
-  static inline const ElementAction<IndexType> entry{std::type_identity<InterfaceCall>{},
-                                                     &InterfaceCall::invoke};
-};
-
-/// An ask through an interface.
+/// The head of a call through an interface: how the element is seen, and the priority.
 template <class I>
-struct InterfacePlace : PrioritisedPlace {
+struct Through {
   FacePointer<I> face;
-  template <class>
-  [[nodiscard]] I& called(Element& element) const {
-    return face->cast(element);
-  }
-  template <class Ar>
-  void serialize(Ar& ar) {
-    PrioritisedPlace::serialize(ar);
-    ar(face);
-  }
-};
-
-/// A call of member function F of the interfaces of all elements.
-template <class I, auto F>
-class InterfaceCallOfAll final : public BroadcastCall {
- public:
-  using Arguments = typename EntryTraits<F>::Arguments;
-
-  InterfaceCallOfAll(FacePointer<I> face, std::int64_t priority, Arguments arguments)
-      : face_(face), priority_(priority), arguments_(std::move(arguments)) {}
-
-  [[nodiscard]] const BroadcastKind& kind() const override { return kind_; }
-  [[nodiscard]] const Action& action() const override { return action_; }
-  [[nodiscard]] std::int64_t priority() const override { return priority_; }
-  void invoke(Element& element) const override {
-    std::apply([&](const auto&... argument) { (void)(face_->cast(element).*F)(argument...); },
-               arguments_);
-  }
-  void pack(Writer& ar) const override { ar(face_, priority_, arguments_); }
-
- private:
-  static SharedCall unpack(Reader& ar) {
-    const auto face = ar.take<FacePointer<I>>();
-    const auto priority = ar.take<std::int64_t>();
-    return SharedCall(new InterfaceCallOfAll(face, priority, ar.take<Arguments>()));
-  }
-  static void never(Pe& /*pe*/, Envelope* /*envelope*/) {}
-  static inline const BroadcastKind kind_{naming::name_of<InterfaceCallOfAll>(), &unpack};
-  static inline const Action action_{
-      naming::name_of<InterfaceCallOfAll*>(), nullptr, nullptr, nullptr, nullptr, Traffic::user};
-
-  FacePointer<I> face_;
-  std::int64_t priority_;
-  Arguments arguments_;
+  Priority priority;
 };
 
 }  // namespace detail
@@ -165,6 +97,9 @@ class InterfaceArray;
 /// create_here and create_home do not compile.
 template <class I, class IndexType = Index1>
 class InterfaceProxy {
+  using Class = detail::Implements<I, IndexType>;
+  using Head = detail::Through<I>;
+
  public:
   using Index = IndexType;
 
@@ -196,7 +131,7 @@ class InterfaceProxy {
   }
   /// As ElementProxy::ask().
   template <auto F, class... Args>
-  [[nodiscard]] Ask<detail::Implements<I, IndexType>, F> ask(Args&&... args) const {
+  [[nodiscard]] Ask<Class, F> ask(Args&&... args) const {
     return ask_with<F>(Priority{detail::entry_rule<I, F>.priority}, std::forward<Args>(args)...);
   }
   /// The same element for messages with a priority.
@@ -206,8 +141,7 @@ class InterfaceProxy {
   /// A target for results: member function F of the interface.
   template <auto F>
   [[nodiscard]] auto target() const {
-    using T = typename decltype(detail::target_value<F, NoValue>())::type;
-    return detail::make_target<T>(target_kind<F, T>, to_bytes(*this));
+    return detail::TargetOf<InterfaceProxy, F>::make(collection_, index_, face_);
   }
 
   [[nodiscard]] const Index& index() const { return index_; }
@@ -224,6 +158,8 @@ class InterfaceProxy {
  private:
   friend class PrioritisedInterface<I, IndexType>;
   friend class InterfaceArray<I, IndexType>;
+  template <class, auto>
+  friend struct detail::TargetOf;
 
   InterfaceProxy(CollectionId collection, const Index& index, detail::FacePointer<I> face)
       : collection_(collection), index_(index), face_(face) {}
@@ -240,8 +176,8 @@ class InterfaceProxy {
     static_assert(creates_none<F>());
     Pe& pe = current_pe();
     auto* message = [&]<class... P>(std::tuple<P...>*) {
-      return detail::InterfaceCall<I, IndexType, F>::make(
-          pe, collection(), index_, face_, priority.value,
+      return detail::Call<Class, Head, F>::make(
+          pe, collection(), index_, Head{face_, priority},
           detail::as_parameter<P>(std::forward<Args>(args))...);
     }(static_cast<typename detail::EntryTraits<F>::Arguments*>(nullptr));
     if (detail::Meter* meter = pe.meter(); meter != nullptr && meter->weighs_messages())
@@ -251,18 +187,13 @@ class InterfaceProxy {
     post(pe, message);
   }
   template <auto F, class... Args>
-  [[nodiscard]] Ask<detail::Implements<I, IndexType>, F> ask_with(Priority priority,
-                                                                  Args&&... args) const {
+  [[nodiscard]] Ask<Class, F> ask_with(Priority priority, Args&&... args) const {
     static_assert(detail::check_ask<I, F, Args...>());
     static_assert(creates_none<F>());
     Pe& pe = current_pe();
-    Ask<detail::Implements<I, IndexType>, F> reply(collection(), index_);
-    detail::InterfacePlace<I> place;
-    static_cast<detail::ReplyPlace&>(place) = reply.place();
-    place.face = face_;
-    place.priority = priority.value;
-    using Call = detail::AskCall<detail::Implements<I, IndexType>, detail::InterfacePlace<I>, F>;
-    post(pe, Call::make(pe, collection_, index_, place, std::forward<Args>(args)...));
+    Ask<Class, F> reply(collection(), index_);
+    post(pe, detail::AskCall<Class, Head, F>::make(pe, collection_, index_, Head{face_, priority},
+                                                   reply.place(), std::forward<Args>(args)...));
     return reply;
   }
   [[nodiscard]] CollectionId collection() const {
@@ -279,24 +210,13 @@ class InterfaceProxy {
       pe.send_here(message);  // it waits until the array is known here
     }
   }
-  template <auto F, class T>
-  static void call_target(const Callback<T>& callback, T&& value) {
-    const auto element = from_bytes<InterfaceProxy>(callback.where());
-    if constexpr (std::is_same_v<T, NoValue>) {
-      element.template send<F>();
-    } else {
-      element.template send<F>(std::forward<T>(value));
-    }
+  template <auto F, class... Value>
+  void give(Value&&... value) const {
+    send<F>(std::forward<Value>(value)...);
   }
-  template <auto F, class T>
-  static std::string describe_target(const Callback<T>& callback) {
-    return text(plain_name(naming::value<F>()), " of ", plain_name(name_of_type<I>),
-                index_text(from_bytes<InterfaceProxy>(callback.where()).index_));
+  [[nodiscard]] std::string in_words() const {
+    return text(plain_name(name_of_type<I>), index_text(index_));
   }
-  template <auto F, class T>
-  static inline const typename Callback<T>::Kind target_kind{
-      naming::name_of<&InterfaceProxy::call_target<F, T>>(), &InterfaceProxy::call_target<F, T>,
-      &InterfaceProxy::describe_target<F, T>};
 
   CollectionId collection_{};
   Index index_{};
@@ -347,8 +267,8 @@ class InterfaceArray {
     TESS_CHECK(!face_.empty(), "a broadcast to an empty InterfaceArray<", name_of_type<I>,
                ">: assign an array to it first");
     detail::start_broadcast(id_,
-                            detail::SharedCall(new detail::InterfaceCallOfAll<I, F>(
-                                face_, detail::entry_rule<I, F>.priority,
+                            detail::SharedCall(new detail::CallOfAll<I, detail::Through<I>, F>(
+                                {face_, Priority{detail::entry_rule<I, F>.priority}},
                                 detail::as_parameters<Arguments>(std::forward<Args>(args)...))));
   }
   /// As ArrayProxy::reduce(); F is a member function of the interface.

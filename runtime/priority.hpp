@@ -42,8 +42,7 @@ class PrioritisedElement {
   /// The call has the priority; the reply has none.
   template <auto F, class... Args>
   [[nodiscard]] auto ask(Args&&... args) const {
-    return element_.template ask_from<F>(detail::PrioritisedPlace{{}, priority_.value},
-                                         std::forward<Args>(args)...);
+    return element_.template ask_as<F>(priority_, std::forward<Args>(args)...);
   }
   template <auto F, class... Args>
   void send_or_create_here(Args&&... args) const {

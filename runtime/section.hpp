@@ -41,8 +41,8 @@ class SectionProxy {
     Pe& pe = current_pe();
     detail::SectionCall call;
     call.numbered.epoch = pe.context().epoch;
-    call.numbered.call = detail::SharedCall(
-        new detail::CallOfAll<C, F>(detail::as_parameters<Arguments>(std::forward<Args>(args)...)));
+    call.numbered.call = detail::SharedCall(new detail::CallOfAll<C, detail::OfEntry, F>(
+        {}, detail::as_parameters<Arguments>(std::forward<Args>(args)...)));
     if (pe.context().led_by != 0) call.led_by = detail::Collection::led_by(pe.context(), array_);
     pe.completion().sent(call.numbered.epoch);
     detail::send_to_collection<&Lists::start_arrives>(pe, array_, root(pe), {id_, std::move(call)});
@@ -65,8 +65,7 @@ class SectionProxy {
   /// A target for results: entry method F of all members.
   template <auto F>
   [[nodiscard]] auto target() const {
-    using T = typename decltype(detail::target_value<F, NoValue>())::type;
-    return detail::make_target<T>(target_kind<F, T>, std::in_place, array_, id_);
+    return detail::TargetOf<SectionProxy, F>::make(array_, id_);
   }
 
   friend auto operator<=>(const SectionProxy&, const SectionProxy&) = default;
@@ -79,6 +78,8 @@ class SectionProxy {
  private:
   template <class>
   friend class detail::TessContributor;
+  template <class, auto>
+  friend struct detail::TargetOf;
   void require_section(const char* use) const {
     TESS_CHECK(array_ != CollectionId{}, use, " an empty SectionProxy<", name_of_type<C>,
                ">: assign create_section() to it first");
@@ -87,21 +88,13 @@ class SectionProxy {
     return detail::root_of(CollectionId{id_.value}, pe.n_pes());
   }
 
-  template <auto F, class T>
-  static void call_target(const Callback<T>& callback, T&& value) {
-    const auto [array, id] =
-        from_bytes<std::tuple<CollectionId, detail::SectionId>>(callback.where());
-    detail::broadcast_value<F>(SectionProxy(array, id), std::forward<T>(value));
+  template <auto F, class... Value>
+  void give(Value&&... value) const {
+    broadcast<F>(std::forward<Value>(value)...);
   }
-  template <auto F, class T>
-  static std::string describe_target(const Callback<T>& /*callback*/) {
-    return text(plain_name(naming::value<F>()), " of the members of a section of ",
-                plain_name(name_of_type<C>));
+  [[nodiscard]] std::string in_words() const {
+    return "the members of a section of " + plain_name(name_of_type<C>);
   }
-  template <auto F, class T>
-  static inline const typename Callback<T>::Kind target_kind{
-      naming::name_of<&SectionProxy::call_target<F, T>>(), &SectionProxy::call_target<F, T>,
-      &SectionProxy::describe_target<F, T>};
 
   CollectionId array_{};
   detail::SectionId id_{};

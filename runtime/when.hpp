@@ -94,8 +94,7 @@ concept Joinable = requires(std::remove_reference_t<A>& a, Waiter& waiter) {
 template <class A>
 using Awaited = decltype(std::declval<std::remove_reference_t<A>&>().await_resume());
 template <class A>
-using AwaitedValue =
-    std::conditional_t<std::is_void_v<Awaited<A>>, NoValue, std::decay_t<Awaited<A>>>;
+using AwaitedValue = ValueOrNone<std::decay_t<Awaited<A>>>;
 template <class A>
 AwaitedValue<A> result_of(A& of) {
   if constexpr (std::is_void_v<Awaited<A>>) {

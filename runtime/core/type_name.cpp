@@ -3,7 +3,7 @@
 namespace tess {
 
 std::string plain_name(std::string_view compiler_name) {
-  // "tess::detail::Call<Block, &Block::step>" is shown as Block::step.
+  // "tess::detail::Call<Block, OfEntry, &Block::step>" is shown as Block::step.
   if (const auto function = compiler_name.rfind('&'); function != std::string_view::npos) {
     compiler_name.remove_prefix(function + 1);
     // Find the bracket that closes the part before the name: "&Block<A<int> >::step>".

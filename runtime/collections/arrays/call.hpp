@@ -27,11 +27,52 @@ template <class... T>
 }
 #endif
 
+// What stands before the arguments of a call is its head: OfEntry, the Priority that the sender
+// gave, or a Through (interface.hpp).
+
+/// The priority of the call is that which its class gives the entry method.
+struct OfEntry {};
+
+/// The priority of a call of F with this head.
+template <class C, auto F, class Head>
+[[nodiscard]] std::int64_t priority_by(const Head& head) {
+  if constexpr (std::is_same_v<Head, OfEntry>) {
+    return entry_rule<C, F>.priority;
+  } else if constexpr (std::is_same_v<Head, Priority>) {
+    return head.value;
+  } else {
+    return head.priority.value;
+  }
+}
+/// False if no call of F with such a head has a priority.
+template <class C, class Head, auto F>
+concept MayHavePriority = !std::is_same_v<Head, OfEntry> || entry_rule<C, F>.priority != 0;
+
+/// What a call with this head calls: the element as a C, or by its interface.
+template <class C, class Head>
+[[nodiscard]] auto& called(const Head& head, Element& element) {
+  if constexpr (requires { head.face; }) {
+    return head.face->cast(element);
+  } else {
+    return static_cast<C&>(element);
+  }
+}
+
+/// The arguments of F behind these values.
+template <class Arguments, class... Before>
+struct Behind;
+template <class... P, class... Before>
+struct Behind<std::tuple<P...>, Before...> {
+  using Type = std::tuple<Before..., P...>;
+};
+template <auto F, class... Before>
+using ArgumentsBehind = typename Behind<typename EntryTraits<F>::Arguments, Before...>::Type;
+
 /// The packed size of a message's arguments.
 template <class... T>
 [[nodiscard]] std::uint64_t payload_bytes(const std::tuple<T...>& arguments) {
-  if constexpr ((Bitwise<T> && ...)) {
-    return (sizeof(T) + ... + 0);
+  if constexpr (((Bitwise<T> || std::is_same_v<T, OfEntry>)&&...)) {
+    return ((Bitwise<T> ? sizeof(T) : 0) + ... + 0);
   } else {
     return written_bytes(arguments);
   }
@@ -82,60 +123,25 @@ struct TypedMessage : ElementMessage<typename C::Index> {
 };
 
 /// A call of entry method F of an element of C.
-template <class C, auto F>
-struct Call final : TypedMessage<Call<C, F>, C, typename EntryTraits<F>::Arguments> {
-  using Base = TypedMessage<Call, C, typename EntryTraits<F>::Arguments>;
+template <class C, class Head, auto F>
+struct Call final : TypedMessage<Call<C, Head, F>, C, ArgumentsBehind<F, Head>> {
+  using Base = TypedMessage<Call, C, ArgumentsBehind<F, Head>>;
   using Index = typename C::Index;
   using Base::Base;
 
-  static void invoke(Element& element, ElementMessage<Index>& envelope) {
-    auto& message = static_cast<Call&>(envelope);
+  static void invoke(Element& element, ElementMessage<Index>& message) {
     std::apply(
-        [&element](auto&... argument) {
-          (void)(static_cast<C&>(element).*F)(std::move(argument)...);
+        [&element](const Head& head, auto&... argument) {
+          (void)(called<C>(head, element).*F)(std::move(argument)...);
         },
-        message.arguments);
+        static_cast<Call&>(message).arguments);
   }
-  /// The priority that the class gives to F.
-  static std::int64_t priority_of(const Envelope& /*message*/)
-    requires(entry_rule<C, F>.priority != 0)
+  static std::int64_t priority_of(const Envelope& message)
+    requires MayHavePriority<C, Head, F>
   {
-    return entry_rule<C, F>.priority;
+    return priority_by<C, F>(std::get<0>(static_cast<const Call&>(message).arguments));
   }
   static inline const ElementAction<Index> entry{std::type_identity<Call>{}, &Call::invoke};
-};
-
-/// The arguments of a message that carries its own priority.
-template <class Arguments>
-struct WithPriority;
-template <class... P>
-struct WithPriority<std::tuple<P...>> {
-  using type = std::tuple<std::int64_t, P...>;
-};
-
-/// The same call with the priority that the sender gave it.
-template <class C, auto F>
-struct PrioritisedCall final
-    : TypedMessage<PrioritisedCall<C, F>, C,
-                   typename WithPriority<typename EntryTraits<F>::Arguments>::type> {
-  using Base = TypedMessage<PrioritisedCall, C,
-                            typename WithPriority<typename EntryTraits<F>::Arguments>::type>;
-  using Index = typename C::Index;
-  using Base::Base;
-
-  static void invoke(Element& element, ElementMessage<Index>& envelope) {
-    auto& message = static_cast<PrioritisedCall&>(envelope);
-    std::apply(
-        [&element](std::int64_t /*priority*/, auto&... argument) {
-          (void)(static_cast<C&>(element).*F)(std::move(argument)...);
-        },
-        message.arguments);
-  }
-  static std::int64_t priority_of(const Envelope& envelope) {
-    return std::get<0>(static_cast<const PrioritisedCall&>(envelope).arguments);
-  }
-  static inline const ElementAction<Index> entry{std::type_identity<PrioritisedCall>{},
-                                                 &PrioritisedCall::invoke};
 };
 
 /// A call of the constructor of C with these argument types.
@@ -196,57 +202,34 @@ struct Awakening final : TypedMessage<Awakening<C>, C, std::tuple<>> {
 };
 
 /// A call of entry method F of all elements.
-template <class C, auto F>
-class CallOfAll : public BroadcastCall {
+template <class C, class Head, auto F>
+class CallOfAll final : public BroadcastCall {
  public:
   using Arguments = typename EntryTraits<F>::Arguments;
 
-  explicit CallOfAll(Arguments arguments) : arguments_(std::move(arguments)) {}
+  CallOfAll(const Head& head, Arguments arguments)
+      : head_(head), arguments_(std::move(arguments)) {}
 
   [[nodiscard]] const BroadcastKind& kind() const override { return kind_; }
   [[nodiscard]] const Action& action() const override { return action_; }
-  [[nodiscard]] std::int64_t priority() const override { return entry_rule<C, F>.priority; }
+  [[nodiscard]] std::int64_t priority() const override { return priority_by<C, F>(head_); }
   void invoke(Element& element) const override {
-    std::apply(
-        [&element](const auto&... argument) { (void)(static_cast<C&>(element).*F)(argument...); },
-        arguments_);
+    std::apply([&](const auto&... argument) { (void)(called<C>(head_, element).*F)(argument...); },
+               arguments_);
   }
-  void pack(Writer& ar) const override { ar(arguments_); }
+  void pack(Writer& ar) const override { ar(head_, arguments_); }
 
  private:
-  static SharedCall unpack(Reader& ar) { return SharedCall(new CallOfAll(ar.take<Arguments>())); }
-  static void never(Pe& /*pe*/, Envelope* /*envelope*/) {}
+  static SharedCall unpack(Reader& ar) {
+    const Head head = ar.take<Head>();
+    return SharedCall(new CallOfAll(head, ar.take<Arguments>()));
+  }
   static inline const BroadcastKind kind_{naming::name_of<CallOfAll>(), &unpack};
   static inline const Action action_{
       naming::name_of<CallOfAll*>(), nullptr, nullptr, nullptr, nullptr, Traffic::user};
 
+  [[no_unique_address]] Head head_;
   Arguments arguments_;
-};
-
-/// The same with the priority that the sender gave it.
-template <class C, auto F>
-class PrioritisedCallOfAll final : public CallOfAll<C, F> {
- public:
-  using Arguments = typename EntryTraits<F>::Arguments;
-
-  PrioritisedCallOfAll(Priority priority, Arguments arguments)
-      : CallOfAll<C, F>(std::move(arguments)), priority_(priority.value) {}
-
-  [[nodiscard]] const BroadcastKind& kind() const override { return kind_; }
-  [[nodiscard]] std::int64_t priority() const override { return priority_; }
-  void pack(Writer& ar) const override {
-    ar(priority_);
-    CallOfAll<C, F>::pack(ar);
-  }
-
- private:
-  static SharedCall unpack(Reader& ar) {
-    const Priority priority{ar.take<std::int64_t>()};
-    return SharedCall(new PrioritisedCallOfAll(priority, ar.take<Arguments>()));
-  }
-  static inline const BroadcastKind kind_{naming::name_of<PrioritisedCallOfAll>(), &unpack};
-
-  std::int64_t priority_;
 };
 
 }  // namespace tess::detail

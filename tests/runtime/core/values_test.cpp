@@ -290,7 +290,7 @@ TEST_CASE("an index prints as a user writes it", "[runtime]") {
 }
 
 TEST_CASE("names are those of the source", "[runtime]") {
-  CHECK(tess::plain_name("tess::detail::Call<Block, &Block::step>") == "Block::step");
+  CHECK(tess::plain_name("tess::detail::Call<Block, OfEntry, &Block::step>") == "Block::step");
   CHECK(tess::plain_name("tess::fuzz::Block") == "fuzz::Block");
 }
 
