@@ -189,7 +189,14 @@ void CommandLine::refuse_without(const std::string& what,
 void CommandLine::refuse_beside(const std::string& other,
                                 std::initializer_list<const char*> names) const {
   for (const char* name : names)
-    if (is_given(name)) refuse_together(name, other);
+    if (is_given(name)) refuse_together(as_given(name), other);
+}
+
+std::string CommandLine::as_given(const std::string& name) const {
+  const CLI::Option* const option = app_->get_option(name);
+  if (option->get_items_expected_max() == 0) return name;  // a flag
+  const std::string values = fmt::format("{}", fmt::join(option->reduced_results(), ","));
+  return values.empty() ? name : name + ' ' + values;
 }
 
 std::string CommandLine::value(const std::string& name) const {

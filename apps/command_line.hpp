@@ -73,13 +73,17 @@ class CommandLine {
   [[nodiscard]] bool is_given(const std::string& name) const;
   /// Throws tess::Error (bad_argument) if one of the options is given, since it needs `what`.
   void refuse_without(const std::string& what, std::initializer_list<const char*> names) const;
-  /// Throws refuse_together() if one of the options is given, since `other` leaves it unused.
+  /// Throws refuse_together() if one of the options is given, since `other` leaves it unused; the
+  /// message has its value.
   void refuse_beside(const std::string& other, std::initializer_list<const char*> names) const;
   /// The value of an option as text, whether it is given or the default: equal for equal values, and
   /// for no others.
   [[nodiscard]] std::string value(const std::string& name) const;
 
  private:
+  /// An option as it was given: "--steps 5", or "--check", a flag.
+  [[nodiscard]] std::string as_given(const std::string& name) const;
+
   std::unique_ptr<CLI::App> app_;
   std::string group_ = "Options";
 };

@@ -282,10 +282,15 @@ Task AnyCoupling::apply(detail::Giver give, detail::Taker take,
   co_await turns->take(take->channel);
   state.require_usable("applied");
   co_await epoch([&, id = setup.id] {
+    turns->begins(take->channel);
     setup.source.broadcast<&AnyPiece::m2m_give_values>(id, give, take);
     setup.target.broadcast<&AnyPiece::m2m_take_if_alone>(id, take);
   });
-  if (last) co_await epoch([&] { last(setup.id); });
+  if (last)
+    co_await epoch([&] {
+      turns->begins(take->channel);
+      last(setup.id);
+    });
   turns->pass_on(take->channel);
 }
 

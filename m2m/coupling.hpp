@@ -151,9 +151,10 @@ class Coupling : public AnyCoupling {
 
   /// Gives the field that Give shows to the memory that Take shows, for example
   /// apply<&Fluid::temperature, &Solid::heat>(). When the task is done, all target pieces have it.
-  /// Applications to the same Take run one after the other, in the order of the calls. What
-  /// received() causes must not start another one to the same Take: neither would end. `last` runs
-  /// in an epoch of its own before the next one begins.
+  /// Applications to the same Take run one after the other, in the order of the calls. `last` runs
+  /// in an epoch of its own before the next one begins. What received() or `last` causes must not
+  /// start another one to the same Take: neither would end, and a check ends the job (not if the
+  /// call stands in an epoch that received() opened).
   ///   Give: std::span<const double> S::f() const, n_points × n_components, ghosts included; if
   ///     source_values are cells, a row per tetrahedron, or four if they are corners
   ///   Take: std::span<double> T::g(), n_owned × n_components; points without a donor keep theirs;

@@ -13,8 +13,9 @@ namespace tess::m2m {
 
 /// `vertex_fields` (n_points rows) become PointData, `tet_fields` (n_tets rows) CellData, with the
 /// components that they have; `time` becomes TimeValue. Blocks and sets are left out, as VTU has
-/// none. Throws Error (bad_value) for fields without a name of their own, (bad_file) with the path
-/// if the file cannot be written.
+/// none. What XML cannot hold of a name becomes U+FFFD (runtime/core/escape.hpp). Throws Error
+/// (bad_value) for fields without a name of their own, also if names become equal by that,
+/// (bad_file) with the path if the file cannot be written.
 void write_vtu(const std::string& path, const TetMesh& mesh, std::span<const Field> vertex_fields,
                std::span<const Field> tet_fields = {}, double time = 0);
 

@@ -17,6 +17,10 @@ namespace tess {
 [[nodiscard]] inline std::int32_t n_pes() {
   return current_pe().n_pes();
 }
+/// The epoch of the calling code: it is not done before all that this code causes (epoch.hpp).
+[[nodiscard]] inline EpochId my_epoch() {
+  return current_pe().context().epoch;
+}
 /// Time since the machine started: wall clock, or the virtual clock of this PE.
 [[nodiscard]] inline Time now() {
   return current_pe().now();

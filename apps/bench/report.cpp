@@ -2,6 +2,7 @@
 
 #include "apps/bench/build.hpp"
 #include "apps/median.hpp"
+#include "runtime/core/escape.hpp"
 #include "runtime/run.hpp"
 #include "runtime/scheduler/pe.hpp"
 
@@ -65,11 +66,13 @@ std::string json_text(const std::vector<Row>& rows, const Origin& common) {
                                              : fmt::format("\"limit\": {:.6g}, \"ratio\": {:.4f}",
                                                            row.limit, row.median / row.limit);
     out += fmt::format(
-        "{}\n  {{\"name\": \"{}\", \"median\": {:.6g}, \"unit\": \"{}\", \"least\": {:.6g}, "
-        "\"spread\": {:.4f}, {}, \"pes\": {}, \"ranks\": {}, \"machine\": \"{}\", \"preset\": "
-        "\"{}\", \"commit\": \"{}\"}}",
-        &row == rows.data() ? "" : ",", row.name, row.median, row.unit, row.least, row.spread,
-        limit, origin.pes, origin.ranks, origin.machine, build_preset, build_commit);
+        "{}\n  {{\"name\": {}, \"median\": {:.6g}, \"unit\": {}, \"least\": {:.6g}, "
+        "\"spread\": {:.4f}, {}, \"pes\": {}, \"ranks\": {}, \"machine\": {}, \"preset\": {}, "
+        "\"commit\": {}}}",
+        &row == rows.data() ? "" : ",", tess::json_string(row.name), row.median,
+        tess::json_string(row.unit), row.least, row.spread, limit, origin.pes, origin.ranks,
+        tess::json_string(origin.machine), tess::json_string(build_preset),
+        tess::json_string(build_commit));
   }
   return out + "\n]}\n";
 }

@@ -12,7 +12,7 @@ namespace m2m_transfer {
 enum class Mode : std::uint8_t { transfer, files, study, round_trips, stability };
 
 /// Throws Error (bad_argument) with the first option that the mode does not use, with the value
-/// given.
+/// given. Without a command line (DriverOptions::line) only values are compared.
 void refuse_contradictions(const DriverOptions& options, Mode mode);
 
 /// The files that the options name; `trace` is that of the runtime's option. Throws Error

@@ -10,6 +10,10 @@
 #include <string>
 #include <vector>
 
+namespace apps {
+class CommandLine;
+}  // namespace apps
+
 namespace m2m_transfer {
 
 struct DriverOptions {
@@ -24,8 +28,9 @@ struct DriverOptions {
   std::string round_trips;           ///< "1,2,5"; empty: no drift table
   bool stability = false;            ///< the table of extreme cases; also of the meshes given
   bool kind_is_given = false;        ///< otherwise tables of kinds have all of them
-  bool fields_are_given = false, partition_is_given = false;
-  bool chares_are_given = false;  ///< --chares or --per-pe
+  bool partition_is_given = false;
+  /// Knows which options were given (contradictions.hpp); null if the options are not from one.
+  const apps::CommandLine* line = nullptr;
 };
 
 /// Returns the exit code.

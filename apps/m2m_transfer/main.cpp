@@ -16,12 +16,7 @@ std::string kind_names() {
   return out;
 }
 
-/// Options of which the driver needs to know whether they were given.
-struct Given {
-  apps::Option fields, kind, chares, per_pe, partition, study;
-};
-
-Given add_options(apps::CommandLine& line, DriverOptions& options, std::string& study) {
+void add_options(apps::CommandLine& line, DriverOptions& options, std::string& study) {
   Request& request = options.request;
   line.option("SOURCE", request.source,
               "mesh: an ExodusII, gmsh (2.2, 4.1) or VTU file, or kuhn:N, a generated box of 6 N^3 "
@@ -30,11 +25,11 @@ Given add_options(apps::CommandLine& line, DriverOptions& options, std::string& 
   line.option("MORE", request.more, "further meshes of the same kinds, for --pairs");
 
   line.group("Transfer");
-  const apps::Option fields = line.option(
+  line.option(
       "--field,--fields NAMES", request.fields,
       "gaussian, linear, sin, an expression in x, y, z, or a field of the source file at vertices "
       "or in elements (moved to the target's elements); several as --fields sin,x*y");
-  const apps::Option kind = line.option(
+  line.option(
       "--kind KIND", request.kind,
       "how values follow from the source: " + kind_names() + "; all: a table with a row per kind");
   line.option("--pairs A:B,B:C", request.pairs,
@@ -62,15 +57,12 @@ Given add_options(apps::CommandLine& line, DriverOptions& options, std::string& 
               "transfer with the weights of this file, without a search");
 
   line.group("Chares");
-  const apps::Option chares =
-      line.option("--chares", request.n_chares,
-                  "chares per mesh (default: --per-pe times the number of PEs)")
-          .between(1, 1 << 20);
-  const apps::Option per_pe =
-      line.option("--per-pe", request.per_pe, "chares per mesh and PE").between(1, 1 << 20);
-  const apps::Option partition =
-      line.option("--partition METHOD", request.partition,
-                  "how the meshes are cut into chares: curve (by all PEs together), rcb or hsfc");
+  line.option("--chares", request.n_chares,
+              "chares per mesh (default: --per-pe times the number of PEs)")
+      .between(1, 1 << 20);
+  line.option("--per-pe", request.per_pe, "chares per mesh and PE").between(1, 1 << 20);
+  line.option("--partition METHOD", request.partition,
+              "how the meshes are cut into chares: curve (by all PEs together), rcb or hsfc");
   line.option("--voxel LENGTH", request.voxel, "edge of a voxel (default: chosen from the meshes)")
       .positive();
 
@@ -93,14 +85,12 @@ Given add_options(apps::CommandLine& line, DriverOptions& options, std::string& 
           "--repeat", options.repeat,
           "number of transfers; the times are those of the fastest (default: 1, with --study 3)")
       .between(1, 1000000);
-  const apps::Option studies =
-      line.option(
-              "--study WHAT", study,
+  line.option("--study WHAT", study,
               "h: error against run time over several meshes (default); kind: the same for every "
               "kind; steps: the time that kept donors save. SOURCE and TARGET can be ladders such "
               "as kuhn:8,16,32@0.2 or a.msh,b.msh; --policy can be repeated. A folder (as --plot) "
               "or a ladder without TARGET can stand in place of h")
-          .takes(0, 1);
+      .takes(0, 1);
   line.option("--round-trips N,N,…", options.round_trips,
               "SOURCE to TARGET and back with one pair of handles, and the drift after so many "
               "trips; for all kinds, or the --kind given");
@@ -110,7 +100,6 @@ Given add_options(apps::CommandLine& line, DriverOptions& options, std::string& 
             "extreme meshes and points, and the same of SOURCE and TARGET where they are given: "
             "points lost, error, bits; exit code 1 if a row fails; --policy and --partition "
             "(default: rcb) hold for every case");
-  return {fields, kind, chares, per_pe, partition, studies};
 }
 
 /// What follows `--study`: the name of a study, a ladder of meshes or the folder of `--plot`.
@@ -127,17 +116,16 @@ int run(tess::Setup& setup, int argc, char** argv) {
   std::string study;
   apps::CommandLine line(
       "Moves fields between two tetrahedral meshes, and prints the error and the time.");
-  const Given given = add_options(line, options, study);
+  add_options(line, options, study);
   if (!line.parse(argc, argv)) return 0;
-  options.kind_is_given = given.kind.is_given();
-  options.fields_are_given = given.fields.is_given();
-  options.partition_is_given = given.partition.is_given();
-  options.chares_are_given = given.chares.is_given() || given.per_pe.is_given();
-  if (given.chares.is_given() && given.per_pe.is_given())
+  options.line = &line;
+  options.kind_is_given = line.is_given("--kind");
+  options.partition_is_given = line.is_given("--partition");
+  if (line.is_given("--chares") && line.is_given("--per-pe"))
     tess::fail(tess::ErrorCode::bad_argument, "--chares ", options.request.n_chares,
                " and --per-pe ", options.request.per_pe,
                " both say how many chares there are; give one");
-  if (given.study.is_given()) read_study(study, options);
+  if (line.is_given("--study")) read_study(study, options);
   if (options.request.source.empty() && !options.stability)
     tess::fail(tess::ErrorCode::bad_argument,
                "SOURCE is missing; give a source and a target mesh (--help lists the arguments)");

@@ -42,8 +42,7 @@ tess::ArrayProxy<Grid> place(const Problem& problem, std::size_t number) {
                                      problem.options.fringe_layers);
   for (std::int32_t k = 0; k < problem.n_parts; ++k) {
     GridLoad load{.part = std::move(parts[static_cast<std::size_t>(k)]),
-                  .fringe_layers = problem.options.fringe_layers,
-                  .least_quality = problem.options.least_quality};
+                  .options = problem.options};
     for (const Point& p : load.part.points) load.values.push_back(field(p));
     if (number == 0) {
       load.walls.push_back(problem.wall.seen_from(tess::collide::box_around(load.part.points)));

@@ -11,8 +11,7 @@ Rows JoinRows::operator()(Rows a, const Rows& b) const {
 }
 
 void Grid::cut() {
-  blanking_.cut(mesh_view(), load_.walls, load_.on_outer,
-                {load_.fringe_layers, load_.least_quality});
+  blanking_.cut(mesh_view(), load_.walls, load_.on_outer, load_.options);
   for (std::size_t v = 0; v < load_.values.size(); ++v)
     if (blanking_.roles()[v] == tess::m2m::Role::hole) load_.values[v] = 0;
   taken_.assign(static_cast<std::size_t>(load_.part.n_owned), 0);

@@ -18,8 +18,7 @@ struct GridLoad {
   std::vector<std::uint8_t> on_outer{};  ///< per point of the part, or empty
   std::vector<tess::m2m::Wall> walls{};  ///< of the other mesh, as seen from the part
   std::vector<double> values{};          ///< per point of the part
-  std::int32_t fringe_layers = 1;
-  double least_quality = 0;
+  tess::m2m::BlankingOptions options{};
 };
 
 /// The points that pieces own, in any order.

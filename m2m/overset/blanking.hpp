@@ -79,8 +79,7 @@ class Blanking {
 
   template <class Ar>
   void serialize(Ar& ar) {
-    ar(options_.fringe_layers, options_.least_quality, roles_, flags_, offered_, iblank_, quality_,
-       reasons_);
+    ar(options_, roles_, flags_, offered_, iblank_, quality_, reasons_);
   }
 
  private:

@@ -1,6 +1,6 @@
 #include "runtime/monitor/board.hpp"
 
-#include "runtime/base/json_string.hpp"
+#include "runtime/core/escape.hpp"
 #include "runtime/monitor/level.hpp"
 #include "runtime/scheduler/runtime.hpp"
 

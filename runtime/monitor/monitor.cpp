@@ -1,6 +1,6 @@
 #include "runtime/monitor/monitor.hpp"
 
-#include "runtime/base/json_string.hpp"
+#include "runtime/core/escape.hpp"
 #include "runtime/core/hash.hpp"
 #include "runtime/monitor/board.hpp"
 #include "runtime/monitor/pe_heat.hpp"

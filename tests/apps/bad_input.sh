@@ -72,7 +72,7 @@ refuses "--steps 2 does not work with fields and weights of files" "${transfer[@
 for unused in "--kind nearest" "--tolerance 0.1" --clamp "--partition rcb" "--voxel 2"; do
   refuses "$unused does not work with --from-weights" "${transfer[@]}" kuhn:2 kuhn:2 --from-weights "$scratch/w.nc" $unused
 done
-refuses "--chares or --per-pe does not work with --from-weights" "${transfer[@]}" kuhn:2 kuhn:2 --from-weights "$scratch/w.nc" --chares 2
+refuses "--chares 2 does not work with --from-weights" "${transfer[@]}" kuhn:2 kuhn:2 --from-weights "$scratch/w.nc" --chares 2
 refuses "'sideways(1)' is no motion" "${transfer[@]}" kuhn:2 kuhn:2 --steps 2 --move 'sideways(1)'
 refuses "--repeat .* --move" "${transfer[@]}" kuhn:2 kuhn:2 --repeat 2 --steps 2 --move 'translate(1,0,0)'
 refuses "--round-trips: '2,1'" "$bin/m2m_transfer" --json "$scratch/result.json" kuhn:2 kuhn:2 --round-trips 2,1
@@ -83,14 +83,14 @@ alone=("$bin/m2m_transfer" kuhn:2 kuhn:3)
 refuses "--plot $scratch is the folder of --study" "${alone[@]}" --plot "$scratch"
 refuses "--move .* --steps" "${alone[@]}" --move 'translate(1,0,0)'
 refuses "--chares 5 and --per-pe 3" "${alone[@]}" --chares 5 --per-pe 3
-refuses "--study does not work with --round-trips" "${alone[@]}" --round-trips 1 --study h
+refuses "--study h does not work with --round-trips" "${alone[@]}" --round-trips 1 --study h
 refuses "--steps 5 does not work with --round-trips" "${alone[@]}" --round-trips 1 --steps 5
 refuses "--kind linear does not work with --stability" "${alone[@]}" --kind linear --stability
-refuses "mesh kuhn:4 does not work with --stability" "${alone[@]}" kuhn:4 --stability
+refuses "MORE kuhn:4 does not work with --stability" "${alone[@]}" kuhn:4 --stability
 refuses "--fields: x is given twice" "${transfer[@]}" kuhn:2 kuhn:2 --fields x,sin --fields x
 refuses "--fields sin does not work with --stability" "${alone[@]}" --stability --fields sin
 refuses "--voxel 0.5 does not work with --stability" "${alone[@]}" --stability --voxel 0.5
-refuses "--per-pe does not work with --stability" "${alone[@]}" --stability --per-pe 3
+refuses "--per-pe 3 does not work with --stability" "${alone[@]}" --stability --per-pe 3
 refuses "a second --policy does not work with --stability" "${alone[@]}" --stability --policy keep --policy nearest
 refuses "policy 'perhaps' is unknown" "${alone[@]}" --stability --policy perhaps
 refuses "partition method 'perhaps'" "${alone[@]}" --stability --partition perhaps
@@ -98,7 +98,7 @@ refuses "partition method 'perhaps'" "${alone[@]}" --stability --partition perha
 refuses "must be finite and at most 1e100" "${alone[@]}" --pes 2 --steps 20 --move 'B:translate(9e99,0,0)'
 refuses "--move .* does not work with --study" "${alone[@]}" --study steps --move 'translate(1,0,0)'
 refuses "--pairs B:A does not work with --study" "${alone[@]}" --study h --pairs B:A
-refuses "mesh kuhn:4 does not work with fields and weights" "${alone[@]}" kuhn:4 --weights "$scratch/w.nc"
+refuses "MORE kuhn:4 does not work with fields and weights" "${alone[@]}" kuhn:4 --weights "$scratch/w.nc"
 refuses "--repeat 3 does not work with fields and weights" "${alone[@]}" --repeat 3 --weights "$scratch/w.nc"
 refuses "--picture .* --kind all" "${alone[@]}" --kind all --picture "$scratch/cut.svg"
 refuses "--kind all does not work with --study steps" "${alone[@]}" --kind all --study steps
@@ -163,15 +163,15 @@ refuses "--balance: is empty" "$bin/amr" --balance ''
 refuses "--balance: is empty" "$bin/leanmd" --balance ''
 refuses "--expect 99: --first does not count" "$bin/nqueens" 8 --first --expect 99
 for unused in "--form chares" "--grain 4" --first; do
-  refuses "${unused% *} does not work with --study" "$bin/nqueens" 8 --study $unused
+  refuses "$unused does not work with --study" "$bin/nqueens" 8 --study $unused
 done
-refuses "--order does not work with --study" "$bin/amr" --study --order 3
+refuses "--order 3 does not work with --study" "$bin/amr" --study --order 3
 for unused in "--atoms 500" "--cells 2,2,2" "--dt 0.1" --check "--balance greedy" "--seed 2"; do
-  refuses "${unused%% *} does not work with --stability" "$bin/leanmd" --stability $unused
+  refuses "$unused does not work with --stability" "$bin/leanmd" --stability $unused
 done
 refuses "--json $scratch/result.json would overwrite --trace" "$bin/stencil" --json "$scratch/result.json" --trace "$scratch/result.json"
 for unused in "--balance greedy" "--order 3" "--max-level 3" "--steps 4" "--json $scratch/result.json"; do
-  refuses "${unused%% *} does not work with --stability" "$bin/amr" --stability $unused
+  refuses "$unused does not work with --stability" "$bin/amr" --stability $unused
 done
 refuses "--by: needs a --heat map" "$bin/tess_monitor" --by pe
 refuses "--level '': give single or funneled" "$bin/embedded" --level

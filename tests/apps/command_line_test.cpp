@@ -1,6 +1,7 @@
 #include "apps/command_line.hpp"
 
 #include "tests/support/catch.hpp"
+#include "tests/support/scratch.hpp"
 
 #include <algorithm>
 #include <array>
@@ -179,4 +180,40 @@ TEST_CASE("an option without a sign takes no negative number, nor one beyond 64 
   CHECK_THROWS_WITH(parse(line, "--limits", "5,-1"), Catch::Contains("-1 is not a whole number"));
   parse(line, "--limits", "5,18446744073709551615");
   CHECK(limits == std::vector<std::uint64_t>{5, 18446744073709551615U});
+}
+
+TEST_CASE("an option that another leaves unused is refused with the value given",
+          "[apps][command_line]") {
+  const auto refusal = [](std::vector<std::string> words) {
+    std::int32_t n_steps = 4;
+    std::vector<std::string> fields, names;
+    std::string study, pairs;
+    bool checks = false;
+    apps::CommandLine line("A program.");
+    line.option("NAME", names, "what it runs");
+    line.option("--steps", n_steps, "steps");
+    line.option("--field,--fields NAMES", fields, "which").separated_by(',');
+    line.option("--pairs A:B", pairs, "which").joined_by(',');
+    line.option("--study WHAT", study, "what it varies").takes(0, 1);
+    line.flag("--check", checks, "compare");
+    words.insert(words.begin(), "program");
+    std::vector<char*> arguments;
+    for (std::string& word : words) arguments.push_back(word.data());
+    REQUIRE(line.parse(static_cast<int>(arguments.size()), arguments.data()));
+    return tess::test::message_of([&] {
+      line.refuse_beside("--other, which stands still",
+                         {"NAME", "--steps", "--fields", "--pairs", "--study", "--check"});
+    });
+  };
+  const std::string other =
+      " does not work with --other, which stands still; leave one of them out";
+  CHECK(refusal({}).empty());
+  CHECK(refusal({"--steps", "5"}) == "--steps 5" + other);
+  CHECK(refusal({"--steps", "5", "--steps=4"}) == "--steps 4" + other);
+  CHECK(refusal({"--field", "a,b", "--fields", "c"}) == "--fields a,b,c" + other);
+  CHECK(refusal({"--pairs", "A:B", "--pairs", "B:C"}) == "--pairs A:B,B:C" + other);
+  CHECK(refusal({"--study", "h"}) == "--study h" + other);
+  CHECK(refusal({"--study"}) == "--study" + other);
+  CHECK(refusal({"--check"}) == "--check" + other);
+  CHECK(refusal({"one", "two"}) == "NAME one,two" + other);
 }

@@ -35,7 +35,10 @@ inline std::vector<XmlElement> read_xml(std::string_view in) {
                                       {"&lt;", '<'},
                                       {"&gt;", '>'},
                                       {"&quot;", '"'},
-                                      {"&apos;", '\''}}) {
+                                      {"&apos;", '\''},
+                                      {"&#9;", '\t'},
+                                      {"&#10;", '\n'},
+                                      {"&#13;", '\r'}}) {
       if (!in.starts_with(name)) continue;
       in.remove_prefix(name.size());
       return value;

@@ -2,6 +2,7 @@
 
 #include "m2m/kuhn.hpp"
 #include "runtime/testing.hpp"
+#include "tests/apps/xml.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/scratch.hpp"
 
@@ -29,7 +30,7 @@ Task write_with(std::string path, std::vector<std::string> names, std::string* m
 
 TEST_CASE("names that parts cannot write are refused before a part writes", "[m2m][io]") {
   const test::Scratch scratch;
-  const std::string path = scratch.path("r.pvtu");
+  std::string path = scratch.path("r.pvtu");
   const auto refusal = [&](std::vector<std::string> names) {
     std::string message;
     const test::Machine machine{.pes = 2, .seed = 1};
@@ -39,7 +40,28 @@ TEST_CASE("names that parts cannot write are refused before a part writes", "[m2
   CHECK_THAT(refusal({"p", "p"}), Catch::StartsWith(path + ": two fields have the name 'p'"));
   CHECK_THAT(refusal({"status", "p"}), Catch::Contains("two fields have the name 'status'"));
   CHECK_THAT(refusal({"p", ""}), Catch::Contains("a field has no name"));
+  CHECK_THAT(refusal({"p\x01", "p\x02"}), Catch::Contains("two fields have the name 'p\ufffd'"));
+  path = scratch.path("r\xff.pvtu");
+  CHECK_THAT(refusal({"p", "q"}), Catch::Contains("XML, which names the parts, cannot hold"));
+  path = scratch.path("r.pvtu");
   CHECK(scratch.n_files() == 0);
   CHECK(refusal({"p", "q"}).empty());
   CHECK(scratch.n_files() == 3);
+}
+
+TEST_CASE("the index of parts names fields and files with any characters of XML", "[m2m][io]") {
+  const test::Scratch scratch;
+  std::string message;
+  const test::Machine machine{.pes = 2, .seed = 1};
+  machine
+      .run([&]() -> Task {
+        return write_with(scratch.path("a & \"b\".pvtu"), {"<p>\n", "caf\xe9"}, &message);
+      })
+      .require_success();
+  CHECK(message.empty());
+  std::string read;
+  for (const auto& element : test::read_xml(test::slurp(scratch.path("a & \"b\".pvtu"))))
+    read += element.attributes;
+  for (const char* written : {"Name=\"<p>\n\"", "Name=\"caf\ufffd\"", "Source=\"a & \"b\".1.vtu\""})
+    CHECK_THAT(read, Catch::Contains(written));
 }

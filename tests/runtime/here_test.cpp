@@ -22,6 +22,10 @@ class Probe : public tess::Group<Probe> {
     contribute(tess::sum, tess::n_collections(), std::move(target));
   }
   void fill(const std::vector<double>& /*values*/) {}
+  void epoch_of(tess::Callback<std::vector<std::uint64_t>> target) {
+    contribute(tess::in_order(tess::concatenate),
+               std::vector<std::uint64_t>{tess::my_epoch().value}, std::move(target));
+  }
 };
 
 template <class Main>
@@ -89,6 +93,29 @@ tess::Task fill_up() {
 TEST_CASE("there is room to a process until messages fill its memory, and again when they have run",
           "[runtime]") {
   CHECK(run("pes=4,per-process=2", 5000, []() -> tess::Task { return fill_up(); }) == 0);
+}
+
+tess::Task see_epochs(std::vector<tess::EpochId>& here, std::vector<std::uint64_t>& of_pes) {
+  const auto probes = tess::create_group<Probe>();
+  tess::Future<std::vector<std::uint64_t>> seen;
+  here.push_back(tess::my_epoch());
+  co_await tess::epoch([&] {
+    here.push_back(tess::my_epoch());
+    probes.broadcast<&Probe::epoch_of>(seen.callback());
+  });
+  here.push_back(tess::my_epoch());
+  of_pes = co_await seen;
+}
+
+TEST_CASE("what an epoch causes is of this epoch, on every PE", "[runtime]") {
+  std::vector<tess::EpochId> here;
+  std::vector<std::uint64_t> of_pes;
+  CHECK(run("pes=3", 1U << 20U, [&]() -> tess::Task { return see_epochs(here, of_pes); }) == 0);
+  REQUIRE(here.size() == 3);
+  CHECK(here[0] == tess::EpochId{});  // the run
+  CHECK(here[1] != here[0]);
+  CHECK(here[2] == here[0]);
+  CHECK(of_pes == std::vector<std::uint64_t>(3, here[1].value));
 }
 
 }  // namespace

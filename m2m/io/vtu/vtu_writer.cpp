@@ -3,6 +3,7 @@
 #include "m2m/io/new_file.hpp"
 #include "runtime/core/check.hpp"
 #include "runtime/core/error.hpp"
+#include "runtime/core/escape.hpp"
 
 #include <bit>
 #include <cstdint>
@@ -23,7 +24,7 @@ class Head {
     line(
         fmt::format("        <DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" "
                     "format=\"appended\" offset=\"{}\"/>",
-                    type, vtu_attribute(name), n_components, offset_));
+                    type, xml_text(name), n_components, offset_));
     offset_ += sizeof(std::uint64_t) + n_bytes;
   }
   void fields(const char* section, std::span<const Field> all, std::size_t n_rows,
@@ -35,9 +36,9 @@ class Head {
                  field.values.size());
       if (field.name.empty()) fail(ErrorCode::bad_value, path, ": a field has no name; name it");
       for (const Field* other = all.data(); other != &field; ++other)
-        if (other->name == field.name)
-          fail(ErrorCode::bad_value, path, ": two fields have the name '", field.name,
-               "'; give each field a name of its own");
+        if (xml_characters(other->name) == xml_characters(field.name))
+          fail(ErrorCode::bad_value, path, ": two fields have the name '",
+               xml_characters(field.name), "'; give each field a name of its own");
       array("Float64", field.name, field.n_components, field.values.size() * sizeof(double));
     }
     line(fmt::format("      </{}>", section));
@@ -57,29 +58,6 @@ void append(NewFile& file, std::span<const T> numbers) {
 }
 
 }  // namespace
-
-std::string vtu_attribute(const std::string& name) {
-  std::string out;
-  for (const char c : name) {
-    switch (c) {
-      case '"':
-        out += "&quot;";
-        break;
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      default:
-        out += c;
-    }
-  }
-  return out;
-}
 
 void write_vtu_file(const std::string& path, const TetMesh& mesh,
                     std::span<const Field> vertex_fields, std::span<const Field> tet_fields,

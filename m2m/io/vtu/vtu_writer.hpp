@@ -14,7 +14,4 @@ void write_vtu_file(const std::string& path, const TetMesh& mesh,
                     std::span<const Field> vertex_fields, std::span<const Field> tet_fields = {},
                     double time = 0);
 
-/// The name of a field as the text of an attribute.
-[[nodiscard]] std::string vtu_attribute(const std::string& name);
-
 }  // namespace tess::m2m

@@ -1,7 +1,7 @@
 #include "runtime/scheduler/measure/trace.hpp"
 
-#include "runtime/base/json_string.hpp"
 #include "runtime/core/error.hpp"
+#include "runtime/core/escape.hpp"
 #include "runtime/messages/envelope.hpp"
 
 #include <cstdio>

@@ -3,6 +3,7 @@
 #include "m2m/field_file.hpp"
 #include "m2m/kuhn.hpp"
 #include "m2m/read_mesh.hpp"
+#include "runtime/core/escape.hpp"
 #include "tests/m2m/field_values.hpp"
 #include "tests/m2m/io/damage.hpp"
 #include "tests/support/catch.hpp"
@@ -242,6 +243,27 @@ TEST_CASE("names in VTU may have numbers of characters", "[m2m][io]") {
     const std::string path = scratch.write("named.vtu", std::string(text).replace(at, 4, written));
     CHECK(FieldFile(path).vertex_field(mesh, name, 0).values.size() == mesh.n_points());
   }
+}
+
+TEST_CASE("names of fields with any bytes give VTU that is read", "[m2m][io]") {
+  const Scratch scratch;
+  const TetMesh mesh = kuhn_mesh({1});
+  const auto named = [&](const std::string& name, double value) {
+    return Field{name, 1, std::vector<double>(mesh.n_points(), value)};
+  };
+  const std::string blanks = "\t\r\n", held = "it's <a> & \"b\" \u00e9\u2192";
+  const std::string path = scratch.path("named.vtu");
+  write_vtu(path, mesh, std::array{named(held + blanks, 1), named("caf\xe9 \x01", 2)});
+  const FieldFile file(path);
+  CHECK(file.vertex_field(mesh, held + "???", 0).values[0] == 1);  // control characters
+  CHECK(file.vertex_field(mesh, "caf\ufffd \ufffd", 0).values[0] == 2);
+  const std::string head = slurp(path).substr(0, slurp(path).find("<AppendedData"));
+  CHECK(tess::xml_characters(head) == head);
+  CHECK_THAT(head, Catch::Contains(tess::xml_text(held) + "&#9;&#13;&#10;\""));
+  CHECK_THAT(message_of([&] {
+               write_vtu(path, mesh, std::array{named("p\x01", 1), named("p\xff", 2)});
+             }),
+             Catch::Contains("two fields have the name 'p\ufffd'"));
 }
 
 TEST_CASE("solids of VTU are split, surfaces skipped, pieces joined, and fields follow",

@@ -7,12 +7,22 @@
 #include "m2m/kuhn.hpp"
 #include "m2m/mesh_parts.hpp"
 
+#include <optional>
 #include <string>
 
 namespace {
 
 using namespace tess;
 using namespace tess::m2m;
+
+class Patch;
+
+/// Applies the coupling again when it is told to, on the PE of the main coroutine.
+class Again : public Group<Again> {
+ public:
+  static inline Coupling<Patch, Patch>* coupling = nullptr;
+  Task apply();
+};
 
 class Patch : public Chare<Patch>, public Piece<Patch> {
  public:
@@ -42,6 +52,10 @@ class Patch : public Chare<Patch>, public Piece<Patch> {
   void number_alike() { part_.point_ids.assign(part_.point_ids.size(), 7); }
   void vanish() { load({}); }
   void forget() { values_.clear(); }
+  void go_on(GroupProxy<Again> again) { again_ = again; }
+  void received(CouplingId /*coupling*/) {
+    if (again_) (*again_)[PeId{0}].send<&Again::apply>();
+  }
 
   template <class Ar>
   void serialize(Ar& ar) {
@@ -51,7 +65,12 @@ class Patch : public Chare<Patch>, public Piece<Patch> {
  private:
   MeshPart part_;
   std::vector<double> values_;
+  std::optional<GroupProxy<Again>> again_;
 };
+
+Task Again::apply() {
+  co_await coupling->apply<&Patch::give, &Patch::take>();
+}
 
 ArrayProxy<Patch> patches(std::int32_t n_cubes, std::int32_t n) {
   const auto array = create<Patch>(range(n));
@@ -129,6 +148,17 @@ Task misuse(std::string name, TransferKind kind) {
       moved[{0}].migrate_to(PeId{1});
       moved[{1}].migrate_to(PeId{0});
     });
+  }
+  if (name == "apply_in_received") {
+    Again::coupling = &coupling;
+    const auto again = create_group<Again>();
+    co_await epoch([&] { target.broadcast<&Patch::go_on>(again); });
+  }
+  if (name == "apply_in_last") {
+    const auto again = [&](CouplingId /*coupling*/) {
+      Task second = coupling.apply<&Patch::give, &Patch::take>();
+    };
+    co_await coupling.apply<&Patch::give, &Patch::take>(again);
   }
   co_await coupling.apply<&Patch::give, &Patch::take>();
   print("no misuse\n");
