@@ -183,6 +183,7 @@ class ElementProxy {
       message->demand = demand_of<F>;
       message->ask = message->demand == detail::Demand::here;
     }
+    weigh(pe, message->arguments);
     post_message(pe, message);
     return reply;
   }
@@ -224,10 +225,8 @@ class ElementProxy {
   void post(Of of, detail::Demand demand, Args&&... args) const {
     static_assert(detail::check_entry<C, F, Args...>());
     Pe& pe = current_pe();
-    auto* message = [&]<class... P>(std::tuple<P...>*) {
-      return detail::Call<C, Of, F>::make(pe, collection_, index_, of,
-                                          detail::as_parameter<P>(std::forward<Args>(args))...);
-    }(static_cast<typename detail::EntryTraits<F>::Arguments*>(nullptr));
+    auto* message = detail::Call<C, Of, F>::make(pe, collection_, index_, of,
+                                                 std::forward<Args>(args)...);
     message->demand = demand;
     message->ask = demand == detail::Demand::here;
     weigh(pe, message->arguments);

@@ -175,16 +175,8 @@ class InterfaceProxy {
     static_assert(detail::check_entry<I, F, Args...>());
     static_assert(creates_none<F>());
     Pe& pe = current_pe();
-    auto* message = [&]<class... P>(std::tuple<P...>*) {
-      return detail::Call<Class, Head, F>::make(
-          pe, collection(), index_, Head{face_, priority},
-          detail::as_parameter<P>(std::forward<Args>(args))...);
-    }(static_cast<typename detail::EntryTraits<F>::Arguments*>(nullptr));
-    if (detail::Meter* meter = pe.meter(); meter != nullptr && meter->weighs_messages())
-        [[unlikely]]
-      meter->sent({collection_, IndexHash<Index>()(index_)},
-                  detail::payload_bytes(message->arguments));
-    post(pe, message);
+    post(pe, detail::Call<Class, Head, F>::make(pe, collection(), index_, Head{face_, priority},
+                                                std::forward<Args>(args)...));
   }
   template <auto F, class... Args>
   [[nodiscard]] Ask<Class, F> ask_with(Priority priority, Args&&... args) const {
@@ -201,7 +193,12 @@ class InterfaceProxy {
                ">: assign array[index] to it first");
     return collection_;
   }
-  static void post(Pe& pe, detail::ElementMessage<Index>* message) {
+  template <class Message>
+  void post(Pe& pe, Message* message) const {
+    if (detail::Meter* meter = pe.meter(); meter != nullptr && meter->weighs_messages())
+        [[unlikely]]
+      meter->sent({collection_, IndexHash<Index>()(index_)},
+                  detail::payload_bytes(message->arguments));
     pe.completion().sent(message->epoch);
     if (detail::Collection* array = detail::find_collection(pe, message->collection);
         array != nullptr) {

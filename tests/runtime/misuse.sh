@@ -81,6 +81,7 @@ says threads future_after_move "a future of PE 0 is used on PE 1: its element ha
 # Within a process the pointer is passed on as it is.
 says processes derived_in_a_pointer "a unique_ptr to Shape holds a Circle, of which only the base class would be sent"
 here negative_argument "an argument is -1, but the entry method takes 0 to 18446744073709551615"
+here negative_ask "an argument is -1, but the entry method takes 0 to 18446744073709551615"
 everywhere mean_of_none "uncaught exception: the mean of no values" "on PE ., at the end of a reduction of Meter"
 here ordered_mean_of_none "the mean of no values" "on PE ., at the end of a reduction of Meter"
 here section_mean_of_none "the mean of no values" "on PE ., at the end of a reduction of a section of Meter"

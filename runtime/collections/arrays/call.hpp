@@ -85,8 +85,10 @@ struct TypedMessage : ElementMessage<typename C::Index> {
   using Index = typename C::Index;
   Arguments arguments;
 
+  TypedMessage() = default;
   template <class... A>
-  explicit TypedMessage(A&&... a) : arguments(std::forward<A>(a)...) {}
+    requires(sizeof...(A) > 0)
+  explicit TypedMessage(A&&... a) : arguments(as_parameters<Arguments>(std::forward<A>(a)...)) {}
 
   template <class... A>
   static Derived* make(Pe& pe, CollectionId collection, const Index& index, A&&... a) {
