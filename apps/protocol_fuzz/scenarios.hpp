@@ -17,6 +17,7 @@ void lives(Trial& trial);                // elements/lives.cpp
 void broadcasts(Trial& trial);           // collectives/broadcasts.cpp
 void constructors(Trial& trial);         // elements/constructors.cpp
 void rounds(Trial& trial);               // collectives/rounds.cpp
+void inner_rounds(Trial& trial);         // collectives/inner_rounds.cpp
 void newborns(Trial& trial);             // elements/newborns.cpp
 void refinement(Trial& trial);           // elements/newborns.cpp
 void sections(Trial& trial);             // collectives/sections.cpp
@@ -31,6 +32,7 @@ void epoch_migrations(Trial& trial);     // completion/epoch_migrations.cpp
 void flood_exit(Trial& trial);           // completion/exits.cpp
 void mailboxes(Trial& trial);            // messages/mailboxes.cpp
 void asks(Trial& trial);                 // messages/asks.cpp
+void values(Trial& trial);               // messages/values.cpp
 void all_at_once(Trial& trial);          // all_at_once.cpp
 void timers(Trial& trial);               // messages/timers.cpp
 void payloads(Trial& trial);             // messages/payloads.cpp
@@ -42,6 +44,7 @@ void exceptions(Trial& trial);           // completion/ends.cpp
 void dead_letters(Trial& trial);         // completion/ends.cpp
 void destroyed(Trial& trial);            // elements/destroyed.cpp
 void ends_at_once(Trial& trial);         // elements/ends_at_once.cpp
+void farewells(Trial& trial);            // elements/farewells.cpp
 void groups(Trial& trial);               // collectives/groups.cpp
 void balance_rounds(Trial& trial);       // elements/balance.cpp
 void balance_barrier(Trial& trial);      // elements/balance_barrier.cpp

@@ -143,6 +143,36 @@ tess::Task future_after_move() {
   all[{0}].send<&Hasty::use>();
 }
 
+/// Keeps a future for its next entry method, and moves in between.
+class Keeper : public tess::Chare<Keeper> {
+ public:
+  void begin(tess::ElementProxy<Block> block, std::chrono::nanoseconds delay) {
+    block.send_after<&Block::answer>(delay, result_.callback());
+  }
+  void move() { migrate_to(PeId{tess::n_pes() - 1}); }
+  tess::Task use() {
+    const int result = co_await result_;
+    tess::print("the result is ", result, "\n");
+  }
+  template <class Ar>
+  void serialize(Ar& /*ar*/) {}
+
+ private:
+  tess::Future<int> result_;
+};
+/// It moves before the result is there, or after.
+tess::Task keep_future(std::chrono::nanoseconds delay) {
+  const auto block = tess::create<Block>(tess::range(1))[{0}];
+  const auto keeper = tess::create<Keeper>(tess::range(1))[{0}];
+  if (delay == std::chrono::nanoseconds(0)) {
+    co_await tess::epoch([&] { keeper.send<&Keeper::begin>(block, delay); });
+  } else {
+    keeper.send<&Keeper::begin>(block, delay);
+  }
+  co_await tess::epoch([&] { keeper.send<&Keeper::move>(); });
+  keeper.send<&Keeper::use>();
+}
+
 /// A map that does not ask how many PEs there are.
 struct ToItsNumber {
   PeId operator()(const tess::Index1& index, std::int32_t /*n_pes*/) const { return {index.x}; }
@@ -560,6 +590,9 @@ const std::map<std::string, std::function<void()>> misuses{
     {"value_awaited_twice", [] { const tess::Task task = value_awaited_twice(); }},
     {"ask_awaited_twice", [] { const tess::Task task = ask_awaited_twice(); }},
     {"future_after_move", [] { const tess::Task task = future_after_move(); }},
+    {"future_left_early",
+     [] { const tess::Task task = keep_future(std::chrono::milliseconds(200)); }},
+    {"future_left_late", [] { const tess::Task task = keep_future(std::chrono::nanoseconds(0)); }},
     {"future_given_two", [] { const tess::Task task = future_given_two(); }},
     {"derived_in_a_pointer", &draw_circle},
     {"negative_argument", [] { blocks()[{0}].send<&Block::count>(-1); }},

@@ -107,6 +107,10 @@ TEST_CASE("an element created in the middle of a step is never one ahead or behi
           "[runtime][protocol]") {
   run_seeds("refinement", &two_to_eight);
 }
+TEST_CASE("elements that reduce at once, of themselves and of others, get their own results",
+          "[runtime][protocol]") {
+  run_seeds("inner_rounds");
+}
 TEST_CASE("each member of a section meets each multicast once, and its reductions are exact",
           "[runtime][protocol][section]") {
   run_seeds("sections");
@@ -141,6 +145,14 @@ TEST_CASE("every timer runs once, and its epoch waits for it", "[runtime][protoc
 }
 TEST_CASE("every ask gets its reply or its error", "[runtime][protocol][ask]") {
   run_seeds("asks");
+}
+TEST_CASE("coroutines give values over elements that move, are late, or on demand",
+          "[runtime][protocol][ask]") {
+  run_seeds("values");
+}
+TEST_CASE("an element that waits after destroy() lacks nothing until it is done",
+          "[runtime][protocol]") {
+  run_seeds("farewells");
 }
 TEST_CASE("values of every kind arrive as they were sent", "[runtime][protocol]") {
   run_seeds("payloads");
@@ -222,7 +234,10 @@ TEST_CASE("the scenarios hold on threads", "[runtime][protocol][threads]") {
                            "ends_at_once",
                            "balance_newcomers",
                            "maps",
-                           "interfaces"}) {
+                           "interfaces",
+                           "inner_rounds",
+                           "values",
+                           "farewells"}) {
     for (const std::int32_t n_pes : {1, 2, 4}) {
       for (std::uint64_t seed = 1; seed <= 3; ++seed) {
         Trial trial(seed, n_pes, Trial::On::threads);

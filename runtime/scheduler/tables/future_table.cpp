@@ -58,7 +58,7 @@ void* FutureTable::require(std::uint64_t id) {
   TESS_CHECK(
       future != nullptr,
       "a result came for a future that has its result already or was destroyed: give it one, "
-      "and keep the future until that is there");
+      "and keep the future until that is there; an element that keeps one does not migrate before");
   return future;
 }
 

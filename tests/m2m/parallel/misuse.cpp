@@ -6,7 +6,9 @@
 #include "m2m/coupling_weights.hpp"
 #include "m2m/kuhn.hpp"
 #include "m2m/mesh_parts.hpp"
+#include "m2m/overset.hpp"
 
+#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -56,6 +58,14 @@ class Patch : public Chare<Patch>, public Piece<Patch> {
   void received(CouplingId /*coupling*/) {
     if (again_) (*again_)[PeId{0}].send<&Again::apply>();
   }
+  /// All points are fringe.
+  void cut() {
+    const std::vector<std::uint8_t> on_outer(part_.points.size(), 1);
+    blanking_.cut(mesh_view(), {}, on_outer);
+  }
+  [[nodiscard]] std::span<const double> flags() const { return blanking_.flags(); }
+  [[nodiscard]] std::span<double> offered(CouplingId from) { return blanking_.offered(from); }
+  void settle(CouplingId from) { blanking_.settle(mesh_view(), from, status(from), 1); }
 
   template <class Ar>
   void serialize(Ar& ar) {
@@ -66,6 +76,7 @@ class Patch : public Chare<Patch>, public Piece<Patch> {
   MeshPart part_;
   std::vector<double> values_;
   std::optional<GroupProxy<Again>> again_;
+  Blanking blanking_;
 };
 
 Task Again::apply() {
@@ -90,6 +101,20 @@ Task collect_too_late(std::string name, ArrayProxy<Patch> source, ArrayProxy<Pat
   const ArrayProxy<Patch> other = name == "weights_shrunk_source" ? source : target;
   co_await epoch([&] { other.broadcast<&Patch::shrink>(); });
   (void)co_await collect_weights(coupling, 125, 64);
+}
+
+/// Settles the fringe without flags, or once more with the same.
+Task settle_alone(std::string name, ArrayProxy<Patch> source, ArrayProxy<Patch> target,
+                  Coupling<Patch, Patch>& coupling) {
+  co_await epoch([&] {
+    source.broadcast<&Patch::cut>();
+    target.broadcast<&Patch::cut>();
+  });
+  if (name == "settled_twice") {
+    co_await coupling.apply<&Patch::flags, &Patch::offered>();
+    co_await epoch([&] { target.broadcast<&Patch::settle>(coupling.id()); });
+  }
+  co_await epoch([&] { target.broadcast<&Patch::settle>(coupling.id()); });
 }
 
 Task misuse(std::string name, TransferKind kind) {
@@ -140,6 +165,7 @@ Task misuse(std::string name, TransferKind kind) {
   }
   if (name == "shrunk") co_await epoch([&] { source.broadcast<&Patch::shrink>(); });
   if (name.starts_with("weights_")) co_await collect_too_late(name, source, target, coupling);
+  if (name.starts_with("settled_")) co_await settle_alone(name, source, target, coupling);
   if (name == "vanished") co_await epoch([&] { source.broadcast<&Patch::vanish>(); });
   if (name == "forgotten") co_await epoch([&] { source[{1}].send<&Patch::forget>(); });
   if (name == "source_moved" || name == "target_moved") {

@@ -37,6 +37,10 @@ for kind in linear second-order; do
   exits 1 "the donors of a coupling are used while a search of it is under way: co_await that first" \
     "$program" weights_meanwhile "$kind" --pes 2
 done
+for misuse in settled_without_flags settled_twice; do
+  exits 1 "the flags of mesh 1 were not taken since cut() and the last settle() of this coupling: apply() it to offered() before each settle()" \
+    "$program" "$misuse" linear --sim pes=2,per-process=1,cost=100ns
+done
 ends vanished "a piece has 0 rows of values, and had [0-9]* in the last search"
 exits 1 "two points of a piece have the id 7: point_ids and tet_ids are unique in the mesh" "$program" same_ids conservative --pes 2
 ends forgotten "give as many rows, ghosts included\|give equally many"
