@@ -225,8 +225,8 @@ class ElementProxy {
   void post(Of of, detail::Demand demand, Args&&... args) const {
     static_assert(detail::check_entry<C, F, Args...>());
     Pe& pe = current_pe();
-    auto* message = detail::Call<C, Of, F>::make(pe, collection_, index_, of,
-                                                 std::forward<Args>(args)...);
+    auto* message =
+        detail::Call<C, Of, F>::make(pe, collection_, index_, of, std::forward<Args>(args)...);
     message->demand = demand;
     message->ask = demand == detail::Demand::here;
     weigh(pe, message->arguments);

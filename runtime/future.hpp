@@ -7,14 +7,15 @@
 // The callback can be sent anywhere; the result arrives at the PE on which callback() was called
 // first. It is taken once (a second co_await ends the job), and the future must outlive it: make it
 // a local variable of the coroutine that awaits it, or a member of an element that does not migrate
-// between callback() and the arrival of the result (a check ends the job otherwise). A Future<void>
-// gets no value.
+// between callback() and co_await. Elsewhere in the process a check ends the job while the result is
+// not there; to another process a future does not go along. A Future<void> gets no value.
 //
 // The same in one line, where the callback is the last argument of a broadcast:
 //
 //     const double t = co_await blocks.reduce<&Block::add>();
 //
-// The future is in its PE's table, by number, from its first use until its result is there.
+// The future's slot is in its PE's table, by number, from its first use until its result is there: the
+// result is written there even if the future has gone to another PE meanwhile, with its element.
 #pragma once
 
 #include "runtime/callback.hpp"
@@ -23,6 +24,9 @@
 #include "runtime/scheduler/pe_action.hpp"
 #include "runtime/task.hpp"
 
+#include <atomic>
+#include <cstdint>
+#include <memory>
 #include <optional>
 #include <tuple>
 #include <type_traits>
@@ -46,7 +50,7 @@ class Future {
   Future(Future&& other) noexcept { take(other); }
   Future& operator=(Future&& other) noexcept {
     if (this == &other) return *this;
-    TESS_CHECK(waiting_ == nullptr, "a future is overwritten while a coroutine waits for it");
+    TESS_CHECK(!is_awaited(), "a future is overwritten while a coroutine waits for it");
     leave();
     take(other);
     return *this;
@@ -57,7 +61,7 @@ class Future {
   [[nodiscard]] Callback<T> callback() const {
     TESS_CHECK(!moved_, "a future that was moved from has no callback: use the one it moved to");
     enter();
-    return detail::make_target<Value>(kind_, to_bytes(std::tuple(pe_->id(), id_)));
+    return detail::make_target<Value>(kind_, to_bytes(std::tuple(pe_->id(), slot_->id.load())));
   }
 
   /// Awaits a variable where it is: g++ 12 would copy an operand that is a call, as futures[i].
@@ -70,32 +74,40 @@ class Future {
     };
     return InPlace{*this};
   }
-  [[nodiscard]] bool await_ready() const { return value_.has_value(); }
+  [[nodiscard]] bool await_ready() const {
+    return slot_ != nullptr && (!is_expected() || pe_ == &current_pe()) && slot_->value.has_value();
+  }
   void await_suspend(Task::Handle task) {
     own_.start(task, 1);
     wait(own_);
     suspend(task, [this] { return waits_for(); });
   }
   T await_resume() {
-    waiting_ = nullptr;
+    withdraw();
     if constexpr (!std::is_void_v<T>) {
       TESS_CHECK(!std::exchange(taken_, true), waits_for(),
                  " is awaited again: the first co_await took its result, so keep that");
-      return std::move(*value_);
+      return std::move(*slot_->value);
     }
   }
 
   // For when_all and when_any.
   void wait(detail::Waiter& waiter) {
     TESS_CHECK(!moved_, "a future that was moved from is awaited: await the one it moved to");
-    TESS_CHECK(waiting_ == nullptr, "two coroutines await one future");
+    TESS_CHECK(!is_awaited(), "two coroutines await one future");
     enter();
-    waiting_ = &waiter;
+    slot_->waiting = &waiter;
   }
-  void withdraw() { waiting_ = nullptr; }
-  [[nodiscard]] std::string waits_for() const { return text("a future of ", name_of_type<T>); }
+  void withdraw() { slot_->waiting = nullptr; }
+  [[nodiscard]] static std::string waits_for() { return text("a future of ", name_of_type<T>); }
 
  private:
+  /// What the table knows. The thread of the PE writes it until `id` is 0.
+  struct Slot {
+    std::optional<Value> value;
+    detail::Waiter* waiting = nullptr;
+    std::atomic<std::uint64_t> id = 0;  // the number in the table; 0: no PE knows it
+  };
   struct Result {
     std::uint64_t id = 0;
     Value value{};
@@ -113,11 +125,13 @@ class Future {
     detail::send_system<&Future::arrives>(here, pe, Result{id, std::move(value)});
   }
   static void arrives(Pe& pe, Result&& result) {
-    auto* future = static_cast<Future*>(pe.require_future(result.id));
-    TESS_CHECK(!future->value_, future->waits_for(), " was given two results: it takes one");
-    future->value_ = std::move(result.value);
-    pe.leave_future(std::exchange(future->id_, 0));
-    if (future->waiting_ != nullptr) future->waiting_->wake();
+    auto* slot = static_cast<Slot*>(pe.require_future(result.id));
+    TESS_CHECK(!slot->value, waits_for(), " was given two results: it takes one");
+    slot->value = std::move(result.value);
+    detail::Waiter* const waiter = slot->waiting;
+    pe.leave_future(result.id);
+    slot->id.store(0, std::memory_order_release);
+    if (waiter != nullptr) waiter->wake();
     pe.completion().processed(pe.context().epoch);
   }
   static std::string describe(const Callback<Value>& callback) {
@@ -127,11 +141,17 @@ class Future {
   static inline const typename Callback<Value>::Kind kind_{naming::name_of<&Future::give>(),
                                                            &Future::give, &Future::describe};
 
+  [[nodiscard]] bool is_awaited() const { return slot_ != nullptr && slot_->waiting != nullptr; }
+  /// True if a PE knows it.
+  [[nodiscard]] bool is_expected() const {
+    return slot_ != nullptr && slot_->id.load(std::memory_order_acquire) != 0;
+  }
   /// From here on a result finds it, on this PE.
   void enter() const {
-    if (id_ == 0) {
+    if (slot_ == nullptr) slot_ = std::make_unique<Slot>();
+    if (!is_expected()) {
       pe_ = &current_pe();
-      id_ = pe_->enter_future(const_cast<Future*>(this));
+      slot_->id = pe_->enter_future(slot_.get());
     }
     require_here();
   }
@@ -142,32 +162,28 @@ class Future {
                "of the coroutine that awaits it, or migrate after that");
   }
   void leave() {
-    if (id_ == 0) return;
+    if (!is_expected()) return;
     if (const Pe* const here = detail::current_pe_or_null(); here != pe_) [[unlikely]] {
       if (here == nullptr || here->stopped()) return;  // the run is over
       require_here();
     }
-    pe_->leave_future(std::exchange(id_, 0));
+    pe_->leave_future(slot_->id);
   }
   void take(Future& other) {
-    TESS_CHECK(other.waiting_ == nullptr, "a future is moved while a coroutine waits for it");
-    TESS_CHECK(other.id_ == 0 || &current_pe() == other.pe_, "a future of ", other.pe_->id(),
+    TESS_CHECK(!other.is_awaited(), "a future is moved while a coroutine waits for it");
+    TESS_CHECK(!other.is_expected() || &current_pe() == other.pe_, "a future of ", other.pe_->id(),
                " is moved on ", current_pe().id(), ": send its callback() instead");
     moved_ = std::exchange(other.moved_, true);
     pe_ = other.pe_;
-    id_ = std::exchange(other.id_, 0);
-    value_ = std::exchange(other.value_, std::nullopt);
+    slot_ = std::move(other.slot_);
     taken_ = other.taken_;
-    if (id_ != 0) pe_->move_future(id_, this);
   }
 
-  mutable Pe* pe_ = nullptr;      // that knows it
-  mutable std::uint64_t id_ = 0;  // its number there; 0: no PE knows it
-  bool moved_ = false;            // to another future
-  std::optional<Value> value_;
+  mutable Pe* pe_ = nullptr;  // that knows the slot, or knew it
+  mutable std::unique_ptr<Slot> slot_;
+  bool moved_ = false;  // to another future
   bool taken_ = false;  // a co_await has moved the value out
   detail::Waiter own_;
-  detail::Waiter* waiting_ = nullptr;
 };
 
 namespace detail {
