@@ -29,7 +29,7 @@ constexpr SceneKind kinds[] = {
      1u << 20, without_seed<crossing_planes>},
     {"dragon", "about N triangles of a closed, knotted, bumpy tube, one model", 871'414,
      without_seed<dragon>},
-    {"boxes", "N random boxes of one scale in the unit cube, 3.4 pairs per box", 1'000'000,
+    {"boxes", "N random boxes of one scale in the unit cube, 3.5 pairs per box", 1'000'000,
      random_boxes},
     {"disparity", "N cubes with sizes over four decades, 9.5 pairs per cube", 1'000'000,
      four_decades},
