@@ -12,11 +12,12 @@ namespace tess::collide {
 /// is possible because all objects are of one model, each is an entry that is left out.
 struct GridCounts {
   double voxel_size = 0;        ///< the longest edge of the smallest voxels
-  std::uint64_t n_levels = 0;   ///< grids, for objects of different sizes
+  std::uint64_t n_levels = 0;   ///< grids, for objects of different sizes; on chares those that
+                                ///< the least and the greatest size of each octave allow
   std::uint64_t n_voxels = 0;   ///< that were searched
   std::uint64_t n_entries = 0;  ///< objects in voxels: an object counts in each that it touches
-  /// Of the entries, those in voxels that can have no pair: with one object, or with objects of one
-  /// model (or of one of two sets) if pairs within it do not count.
+  /// Of the entries, those in voxels that can have no pair: with one object, with none of the grid's
+  /// own sizes, or with objects of one model (or of one of two sets) if pairs within it do not count.
   std::uint64_t n_left_out = 0;
 
   /// Of two parts of a search.

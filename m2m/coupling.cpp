@@ -5,6 +5,7 @@
 #include "runtime/core/error.hpp"
 
 #include <algorithm>
+#include <exception>
 #include <tuple>
 #include <utility>
 #include <variant>
@@ -280,18 +281,24 @@ Task AnyCoupling::apply(detail::Giver give, detail::Taker take,
   const Counted counted(state.under_way.n_applications);
   const std::shared_ptr<Turns> turns = state.turns;
   co_await turns->take(take->channel);
-  state.require_usable("applied");
-  co_await epoch([&, id = setup.id] {
-    turns->begins(take->channel);
-    setup.source.broadcast<&AnyPiece::m2m_give_values>(id, give, take);
-    setup.target.broadcast<&AnyPiece::m2m_take_if_alone>(id, take);
-  });
-  if (last)
-    co_await epoch([&] {
+  std::exception_ptr thrown;  // the next one has its turn all the same
+  try {
+    state.require_usable("applied");
+    co_await epoch([&, id = setup.id] {
       turns->begins(take->channel);
-      last(setup.id);
+      setup.source.broadcast<&AnyPiece::m2m_give_values>(id, give, take);
+      setup.target.broadcast<&AnyPiece::m2m_take_if_alone>(id, take);
     });
+    if (last)
+      co_await epoch([&] {
+        turns->begins(take->channel);
+        last(setup.id);
+      });
+  } catch (...) {
+    thrown = std::current_exception();
+  }
   turns->pass_on(take->channel);
+  if (thrown) std::rethrow_exception(thrown);
 }
 
 }  // namespace tess::m2m

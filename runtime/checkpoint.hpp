@@ -53,9 +53,10 @@ namespace tess {
 /// Saves the run in `folder`, which all processes can reach, unless there are buddy copies. Only in
 /// the main coroutine, outside of epochs. Throws Error if the run is not quiet, if the files cannot
 /// be written, or if the folder has checkpoints of another run: of one that is neither this run nor
-/// one that this run, or one before it, went on with by restart(); then the run can go on. The state
-/// is packed once all messages are done, as the elements are, and lives until the task ends. Give
-/// the options a name first: g++ 12 fails on an aggregate in a `co_await` expression.
+/// one that this run, or one before it, went on with by restart() (if the folder has one of these,
+/// those of another restart from it count as its own); then the run can go on. The state is packed
+/// once all messages are done, as the elements are, and lives until the task ends. Give the options
+/// a name first: g++ 12 fails on an aggregate in a `co_await` expression.
 template <class State>
 [[nodiscard]] Task checkpoint(const std::string& folder, const State& state,
                               const CheckpointOptions& options) {

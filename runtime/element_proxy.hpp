@@ -76,7 +76,8 @@ class ElementProxy {
   template <auto F, class... Args>
   Timer send_after(std::chrono::nanoseconds delay, Args&&... args) const {
     static_assert(detail::check_entry<C, F, Args...>());
-    return after(delay, [to = *this, arguments = typename detail::EntryTraits<F>::Arguments(
+    using Arguments = typename detail::EntryTraits<F>::Arguments;
+    return after(delay, [to = *this, arguments = detail::as_parameters<Arguments>(
                                          std::forward<Args>(args)...)] {
       std::apply([&to](const auto&... argument) { to.template send<F>(argument...); }, arguments);
     });

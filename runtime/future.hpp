@@ -75,7 +75,8 @@ class Future {
     return InPlace{*this};
   }
   [[nodiscard]] bool await_ready() const {
-    return slot_ != nullptr && (!is_expected() || pe_ == &current_pe()) && slot_->value.has_value();
+    if (is_expected()) require_here();  // the result may come meanwhile: decided once
+    return slot_ != nullptr && slot_->value.has_value();
   }
   void await_suspend(Task::Handle task) {
     own_.start(task, 1);
@@ -98,7 +99,9 @@ class Future {
     enter();
     slot_->waiting = &waiter;
   }
-  void withdraw() { slot_->waiting = nullptr; }
+  void withdraw() {
+    if (slot_ != nullptr) slot_->waiting = nullptr;
+  }
   [[nodiscard]] static std::string waits_for() { return text("a future of ", name_of_type<T>); }
 
  private:

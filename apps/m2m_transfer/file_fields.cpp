@@ -277,6 +277,7 @@ void check_options(const FileFieldsRequest& request) {
   plot::require_writable("--weights", request.weights);
   plot::require_writable("--out", request.out);
   require_result_format(request.out);
+  require_names_differ(request.out, split_names(request.fields));
   if (is_pvtu(request.out))
     fail(ErrorCode::bad_argument, "--out ", request.out,
          ": fields of files are gathered on one process; give a file that ends in .exo or .vtu");

@@ -7,6 +7,7 @@
 #include "m2m/write_exodus.hpp"
 #include "m2m/write_vtu.hpp"
 #include "runtime/core/error.hpp"
+#include "runtime/core/escape.hpp"
 
 #include <algorithm>
 #include <array>
@@ -26,7 +27,7 @@ namespace m2m_transfer {
 }
 
 /// The path of a result, or empty. Throws Error (bad_argument) if its ending names no format that
-/// is written.
+/// is written, or if the index of the parts cannot hold its name.
 inline void require_result_format(const std::string& path) {
   constexpr std::array<std::string_view, 9> endings{".vtu", ".pvtu", ".exo", ".e",   ".ex2",
                                                     ".g",   ".exii", ".gen", ".ncdf"};
@@ -37,6 +38,21 @@ inline void require_result_format(const std::string& path) {
     fail(ErrorCode::bad_argument, "--out ", path,
          ": the ending chooses the format; give .exo (ExodusII), .vtu or, one file per chare, "
          ".pvtu (VTK)");
+  const std::string file = path.substr(path.rfind('/') + 1);
+  if (is_pvtu(path) && xml_characters(file) != file)
+    fail(ErrorCode::bad_argument, "--out ", path,
+         ": XML, which names the parts, cannot hold this name; give one in UTF-8 without control "
+         "characters");
+}
+
+/// Throws Error (bad_argument) if two of these fields would have one name in the result.
+inline void require_names_differ(const std::string& path, const std::vector<std::string>& names) {
+  if (!is_vtu(path)) return;
+  for (std::size_t f = 0; f < names.size(); ++f)
+    for (std::size_t g = 0; g < f; ++g)
+      if (xml_characters(names[f]) == xml_characters(names[g]))
+        fail(ErrorCode::bad_argument, "--out ", path, ": XML has one name, ",
+             xml_characters(names[f]), ", for two fields; give a file that ends in .exo");
 }
 
 /// Throws Error (bad_file) with the path if it cannot be written.

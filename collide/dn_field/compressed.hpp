@@ -1,5 +1,5 @@
-// A field in a third to a twentieth of the memory: two levels, blocks of 4³ to 16³ voxels, each divided
-// into equal cells as coarse as the error bound allows (section 3.2).
+// A field in half (16³) to a twenty-first (256³) of the memory: two levels, blocks of 4³ to 16³ voxels,
+// each divided into equal cells as coarse as the error bound allows (section 3.2).
 //
 //     block (i >> e, j >> e, k >> e)  ->  first entry << 3 | s; cells of 2^s voxels, s up to e
 //

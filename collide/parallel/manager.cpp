@@ -39,7 +39,8 @@ void Manager::begin(std::uint64_t step, const Plan& plan, const Report& report) 
   Round& r = round(step);
   if (plan.nothing) {
     last_ = {};
-    last_.grid.n_entries = last_.grid.n_left_out = r.delivery->objects.size();
+    if (plan.rules.within_model == WithinModel::skip)
+      last_.grid.n_entries = last_.grid.n_left_out = r.delivery->objects.size();
     rounds_.erase(step);
     return;
   }

@@ -43,8 +43,10 @@ template <class Does>
   try {
     does();
   } catch (const std::exception& error) {  // also of serialize(), which is the user's
+    current_pe().forget_place();
     return error.what();
   } catch (...) {
+    current_pe().forget_place();
     return "an exception that is not a std::exception";
   }
   return {};

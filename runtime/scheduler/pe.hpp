@@ -260,6 +260,8 @@ class Pe {
   void note_place();
   /// The same for code that is of no element: `instead` says what ran.
   void note_place(std::string_view instead);
+  /// The exception was caught.
+  void forget_place() { place_.clear(); }
   /// An exception leaves a constructor of a class: records it, with the types of its arguments, for
   /// the report.
   void note_constructor(std::string_view of, std::initializer_list<std::string_view> types);

@@ -31,8 +31,9 @@ class Clerk : public tess::Chare<Clerk> {
   tess::Task read_own(tess::Callback<int> target) {
     const auto both =
         co_await tess::when_all(tess::epoch([this] { notes_.put({1}); }), notes_.take(1));
+    tess::Future<int> unused;
     const auto first =
-        co_await tess::when_any(tess::epoch([this] { notes_.put({2}); }), notes_.take(2));
+        co_await tess::when_any(tess::epoch([this] { notes_.put({2}); }), notes_.take(2), unused);
     const int left = static_cast<int>(notes_.size());
     target(std::get<1>(both).key + (first.index() == 1 ? 10 : 20) + left);
   }

@@ -596,6 +596,8 @@ const std::map<std::string, std::function<void()>> misuses{
     {"future_given_two", [] { const tess::Task task = future_given_two(); }},
     {"derived_in_a_pointer", &draw_circle},
     {"negative_argument", [] { blocks()[{0}].send<&Block::count>(-1); }},
+    {"negative_later",
+     [] { (void)blocks()[{0}].send_after<&Block::count>(std::chrono::milliseconds(1), -1); }},
     {"negative_ask", [] { (void)blocks()[{0}].ask<&Block::count>(-1); }},
     {"exit_-1", [] { tess::exit(-1); }},
     {"exit_256", [] { tess::exit(256); }},

@@ -141,6 +141,21 @@ Task transfer_twice(TransferKind kind, bool second_first, Missing& missing) {
   if (!second_first) co_await second;
 }
 
+/// What comes behind the values of the first application throws; the second one has its turn.
+Task apply_after_error(Range& both) {
+  ArrayProxy<Patch> source, target;
+  co_await epoch([&] { source = patches(3, 4), target = patches(4, 3); });
+  Coupling coupling(source, target);
+  co_await coupling.search();
+  try {
+    co_await coupling.apply<&Patch::ones, &Patch::taken>(
+        [](CouplingId) { fail(ErrorCode::bad_value, "no"); });
+  } catch (const Error&) {
+  }
+  co_await coupling.apply<&Patch::twos, &Patch::taken>();
+  co_await range_of(target, &both);
+}
+
 /// A kind that smooths, from a mesh to itself: the second application reads what the first wrote.
 Task smooth_twice(bool at_once, ValueOf& values) {
   const TetMesh mesh = kuhn_mesh({4});
@@ -174,6 +189,13 @@ TEST_CASE("of two applications to one member each ends after its values, and the
         REQUIRE(seen.first.least > 1 - 1e-9);  // the second one may be on its way
         REQUIRE(seen.both.is(2));
       });
+}
+
+TEST_CASE("an application whose last step throws passes its turn on", "[m2m][turns]") {
+  Seen seen;
+  const test::Machine machine{.pes = 3};
+  machine.run([&]() -> Task { return apply_after_error(seen.both); }).require_success();
+  CHECK(seen.both.is(2));
 }
 
 TEST_CASE("a Transfer that is applied again meanwhile has moved all values when a task is done",
