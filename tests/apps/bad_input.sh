@@ -110,6 +110,7 @@ refuses "would overwrite SOURCE" "$bin/m2m_transfer" "$scratch/kept.msh" kuhn:2 
 refuses "kept.xyz: the ending chooses the format; give .exo" "${alone[@]}" --out "$scratch/kept.xyz"
 refuses "r.pvtu: fields of files are gathered" "${alone[@]}" --out "$scratch/r.pvtu" --weights "$scratch/w.nc"
 refuses "missing/r.pvtu" "${alone[@]}" --out "$scratch/missing/r.pvtu"
+refuses "XML, which names the parts, cannot hold this name" "${alone[@]}" --out "$scratch/"$'r\xf6.pvtu'
 refuses "cut.png: a picture's name must end in .svg" "${alone[@]}" --picture "$scratch/cut.png"
 refuses "would overwrite --out" "${alone[@]}" --out "$scratch/same.exo" --json "$scratch/same.exo"
 refuses "would overwrite SOURCE" "$bin/m2m_transfer" "$scratch/kept.msh" kuhn:2 --trace "$scratch/kept.msh"
