@@ -2,9 +2,11 @@
 // await the neighbours', relax, contribute the change; the reduction's result starts the next step.
 // Blocks may migrate between any two steps. The program prints the time and the distance of the
 // values from the exact iterate. With --checkpoint the main coroutine pauses the blocks and saves
-// them; with --restart it continues from there.
+// them; with --restart it continues from there. With --repeat it runs again from zero, as often as
+// asked for, and the time is the median.
 #include "apps/checkpoints.hpp"
 #include "apps/command_line.hpp"
+#include "apps/median.hpp"
 #include "apps/plot/file_names.hpp"
 #include "apps/plot/write_file.hpp"
 #include "apps/stencil/grid.hpp"
@@ -15,6 +17,7 @@
 #include <chrono>
 #include <ctime>
 #include <fmt/core.h>
+#include <optional>
 
 namespace stencil {
 namespace {
@@ -100,9 +103,27 @@ struct State {
 
 struct Options {
   Grid grid{{64}, 4, 10'000};
+  std::optional<std::int32_t> repeat;  ///< runs that count, after one that warms up
   std::string json;
   apps::Checkpoints checkpoints;
 };
+
+tess::ArrayProxy<Block> make_blocks(const Grid& grid) {
+  return tess::create<Block>(tess::range(grid.n_blocks, grid.n_blocks), grid);
+}
+
+/// Goes on to the last step. Returns the elapsed seconds.
+tess::TaskOf<double> run(State& state, apps::Checkpoints& checkpoints) {
+  const std::int32_t last = state.grid.n_steps;
+  const tess::Time begin = tess::now();
+  while (state.step < last) {
+    const std::int32_t from = state.step;
+    state.step = checkpoints.pause_after(from, last);
+    co_await state.blocks.reduce<&Block::run>(state.step);
+    co_await checkpoints.save_if_due(state, from, last);
+  }
+  co_return tess::seconds(tess::now() - begin);
+}
 
 tess::Task relax(Options options) {
   State state;
@@ -111,28 +132,37 @@ tess::Task relax(Options options) {
     state.grid.n_steps = options.grid.n_steps;
   } else {
     state.grid = options.grid;
-    state.blocks =
-        tess::create<Block>(tess::range(state.grid.n_blocks, state.grid.n_blocks), state.grid);
+    state.blocks = make_blocks(state.grid);
   }
   const Grid& grid = state.grid;
   const std::int32_t first = state.step;
-  const tess::Time begin = tess::now();
-  while (state.step < grid.n_steps) {
-    const std::int32_t from = state.step;
-    state.step = options.checkpoints.pause_after(from, grid.n_steps);
-    co_await state.blocks.reduce<&Block::run>(state.step);
-    co_await options.checkpoints.save_if_due(state, from, grid.n_steps);
+  double seconds = co_await run(state, options.checkpoints);
+  std::vector<double> times;
+  for (std::int32_t left = options.repeat.value_or(0); left > 0; --left) {
+    co_await tess::epoch([&] { state.blocks.destroy(); });
+    state.blocks = make_blocks(grid);
+    state.step = 0;
+    seconds = co_await run(state, options.checkpoints);
+    times.push_back(seconds);
   }
-  const double seconds = tess::seconds(tess::now() - begin);
+  if (!times.empty()) seconds = apps::median(times);
   const Outcome outcome = co_await state.blocks.reduce<&Block::compare>();
+  const auto per_step = [&](double time) {
+    return time * 1e6 / std::max(1, grid.n_steps - first) / grid.n_blocks / grid.n_blocks;
+  };
   tess::print(fmt::format(
       "{0} x {0} points, {1} x {1} blocks, {2} steps: {3:.6f} s, {4:.3f} us per block and step\n"
       "from the exact iterate {5:.3e}, from the solution {6:.3e}, hash {7:016x}\n",
-      grid.problem.size, grid.n_blocks, grid.n_steps, seconds,
-      seconds * 1e6 / std::max(1, grid.n_steps - first) / grid.n_blocks / grid.n_blocks,
+      grid.problem.size, grid.n_blocks, grid.n_steps, seconds, per_step(seconds),
       outcome.from_iterate, outcome.from_solution, outcome.hash));
   TESS_CHECK(outcome.from_iterate <= grid.problem.rounding(grid.n_steps), "the values are ",
              outcome.from_iterate, " away from the Jacobi iterate");
+  if (!times.empty()) {
+    const auto [least, greatest] = std::minmax_element(times.begin(), times.end());
+    tess::print(fmt::format(
+        "the time is the median of {} runs, after one that warms up; {:.3f} to {:.3f} us\n",
+        times.size(), per_step(*least), per_step(*greatest)));
+  }
   if (!options.json.empty())
     plot::write_file(
         options.json,
@@ -155,9 +185,15 @@ int main(int argc, char** argv) {
     line.option("--steps", grid.n_steps, "Jacobi steps").between(1, 1'000'000'000);
     line.flag("--log-steps", grid.logs_steps,
               "print the time of day and the processor time of a process at each step");
+    line.option("--repeat", options.repeat,
+                "runs that count, after one that warms up; the time is their median (default: one "
+                "run, without a warm-up)")
+        .between(1, 1000);
     line.option("--json FILE", options.json, "write the result as JSON");
     options.checkpoints.add_options(line);
     if (!line.parse(argc, argv)) return 0;
+    if (options.repeat)  // each run starts from zero, and the steps of all would be in one log
+      line.refuse_beside("--repeat", {"--checkpoint", "--restart", "--log-steps"});
     options.checkpoints.check(line, {"--blocks", "--size", "--log-steps"});
     plot::require_writable("--json", options.json);
     plot::FileNames names;

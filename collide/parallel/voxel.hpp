@@ -1,7 +1,8 @@
-// A voxel is an element of a sparse array: a cell, and the level that it belongs to. The objects
-// that touch it create it (Lawlor and Kalé 2002, section 3.3). When it has heard from all PEs that
-// send to it, it solves a serial problem of its own, without waiting for other voxels. Empty space
-// costs nothing: it has no voxels.
+// A voxel is an element of a sparse array: a cell, and the level that it belongs to (Lawlor and
+// Kalé 2002, section 3.3). In the paper any sender may create it (section 3.5). Here the home of
+// the cell names the PE whose objects create it, and leaves out a voxel that can have no pair. When
+// it has heard from all PEs that send to it, it solves a serial problem of its own, without waiting
+// for other voxels. Empty space costs nothing: it has no voxels.
 #pragma once
 
 #include "runtime/runtime.hpp"

@@ -171,6 +171,10 @@ for unused in "--atoms 500" "--cells 2,2,2" "--dt 0.1" --check "--balance greedy
   refuses "$unused does not work with --stability" "$bin/leanmd" --stability $unused
 done
 refuses "--json $scratch/result.json would overwrite --trace" "$bin/stencil" --json "$scratch/result.json" --trace "$scratch/result.json"
+for unused in --log-steps "--checkpoint $scratch/saved" "--restart $scratch/saved"; do
+  refuses "$unused does not work with --repeat" "$bin/stencil" --repeat 3 $unused
+done
+refuses "--repeat" "$bin/stencil" --repeat 0
 for unused in "--balance greedy" "--order 3" "--max-level 3" "--steps 4" "--json $scratch/result.json"; do
   refuses "$unused does not work with --stability" "$bin/amr" --stability $unused
 done

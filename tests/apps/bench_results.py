@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Checks the kept results of benchmarks, keep.sh, and that rows have no ratio to a figure of another machine.
+"""Checks the kept results of benchmarks, keep.sh, start.sh, and that rows have no ratio to a figure of another machine.
 
     bench_results.py ROOT BIN
 """
@@ -66,6 +66,19 @@ with tempfile.TemporaryDirectory() as fake:
     done = subprocess.run(["bash", root / "apps/bench/monitor_cost.sh", "--built", fake, "--seconds", "1"], text=True,
                           stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, timeout=60)
     assert done.returncode == 1 and "the run ended before it could be watched" in done.stderr, done
+
+# start.sh prints a row for each way to start, refuses a number of runs that it cannot do, and ends if a program fails.
+start = ["bash", root / "apps/bench/start.sh", "--built", built, "--repeat"]
+table = subprocess.run(start + ["2"], check=True, text=True, stdout=subprocess.PIPE).stdout
+rows = list(csv.DictReader(table.splitlines()))
+assert [row["name"] for row in rows] == ["start_one_process", "start_two_ranks", "start_mpirun_true"], table
+assert all(0 < float(row["least"]) <= float(row["median"]) for row in rows), table
+assert subprocess.run(start + ["0"], stderr=subprocess.DEVNULL).returncode == 2
+with tempfile.TemporaryDirectory() as fake:
+    pathlib.Path(fake, "hello").write_text("#!/bin/sh\nexit 3\n")
+    pathlib.Path(fake, "hello").chmod(0o755)
+    done = subprocess.run(["bash", root / "apps/bench/start.sh", "--built", fake], stdout=subprocess.PIPE)
+    assert (done.returncode, done.stdout) == (3, b""), done
 
 # A time of a particle's step has no limit; a share, of two times of the same run, has one.
 table = subprocess.run([built + "/bench_dn_field", "--particles", "20000", "--repeat", "1", "--only", "impact"], check=True,

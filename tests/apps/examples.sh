@@ -48,6 +48,9 @@ same() {
 }
 answers '^step 399 [0-9]+\.[0-9]{6} [0-9]+\.[0-9]{6}$' "${stencil[@]}" --pes 1 --log-steps
 same "${stencil[@]}" --pes 2 --blocks 5
+same "${stencil[@]}" --pes 2 --blocks 5 --repeat 3
+same "${mpirun[@]}" -n 2 "${stencil[@]}" --pes 1 --blocks 4 --repeat 2
+answers '^the time is the median of 3 runs, after one that warms up; [0-9.]+ to [0-9.]+ us$' "${stencil[@]}" --pes 2 --repeat 3
 same "${stencil[@]}" --pes 4 --blocks 7
 same "${mpirun[@]}" -n 2 "${stencil[@]}" --pes 1 --blocks 4
 same "$bin/stencil" --size 48 --steps 400 --sim pes=8,cost=100ns,seed=5 --blocks 6
