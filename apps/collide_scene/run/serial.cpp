@@ -5,8 +5,22 @@
 #include "runtime/core/cpu_clock.hpp"
 
 #include <chrono>
+#include <span>
+#include <vector>
 
 namespace collide_scene {
+namespace {
+
+/// A box per object, in memory that is kept: to get as much anew for each collision can take longer
+/// than the search.
+std::span<const tess::collide::Aabb> boxes_now(const Scene& scene) {
+  if (scene.triangles.empty()) return scene.boxes;
+  thread_local std::vector<tess::collide::Aabb> boxes;
+  fill_boxes(scene, boxes);
+  return boxes;
+}
+
+}  // namespace
 
 SerialCollision collide_once(const Scene& scene, const Rules& rules, int step,
                              std::vector<ScenePair>* pairs) {
@@ -27,10 +41,8 @@ SerialCollision collide_once(const Scene& scene, const Rules& rules, int step,
   const double cpu_begin = tess::thread_cpu_seconds();
   if (rules.triangles)
     for_each_pair(std::span<const Triangle>(scene.triangles), options, found);
-  else if (scene.triangles.empty())
-    for_each_pair(std::span<const Aabb>(scene.boxes), options, found);
   else
-    for_each_pair(std::span<const Aabb>(boxes_of(scene)), options, found);
+    for_each_pair(boxes_now(scene), options, found);
   out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   out.cpu_seconds = tess::thread_cpu_seconds() - cpu_begin;
   out.answer.n_candidates = statistics.n_candidates;

@@ -51,10 +51,14 @@ constexpr SceneKind kinds[] = {
 }  // namespace
 
 std::vector<Aabb> boxes_of(const Scene& scene) {
-  std::vector<Aabb> boxes = scene.boxes;
-  boxes.reserve(scene.n_objects());
-  for (const auto& triangle : scene.triangles) boxes.push_back(box_of(triangle));
+  std::vector<Aabb> boxes;
+  fill_boxes(scene, boxes);
   return boxes;
+}
+void fill_boxes(const Scene& scene, std::vector<Aabb>& boxes) {
+  boxes.reserve(scene.n_objects());
+  boxes.assign(scene.boxes.begin(), scene.boxes.end());
+  for (const auto& triangle : scene.triangles) boxes.push_back(box_of(triangle));
 }
 
 std::span<const SceneKind> scene_kinds() {

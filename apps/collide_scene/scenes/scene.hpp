@@ -34,6 +34,8 @@ struct Scene {
 
 /// A box per object: those of the triangles, or the boxes themselves.
 [[nodiscard]] std::vector<tess::collide::Aabb> boxes_of(const Scene& scene);
+/// The same, in place of what `boxes` held.
+void fill_boxes(const Scene& scene, std::vector<tess::collide::Aabb>& boxes);
 
 /// A rule for scenes of any size.
 struct SceneKind {
