@@ -41,7 +41,7 @@ class Singer : public tess::Chare<Singer> {
   int n_sung_ = 0;
 };
 
-struct State {
+struct ChoirState {
   tess::ArrayProxy<Singer> singers;
   tess::SectionProxy<Singer> choir;
   Voices members;
@@ -53,7 +53,7 @@ struct State {
 };
 
 /// Two elements conduct at the same time; one of them is no member.
-tess::Task sing(State& state) {
+tess::Task sing(ChoirState& state) {
   auto one = state.singers[{0}].ask<&Singer::conduct>(state.choir);
   auto other = state.singers[{3}].ask<&Singer::conduct>(state.choir);
   const Voices of_other = co_await other;
@@ -64,13 +64,13 @@ tess::Task sing(State& state) {
   const int n_sung = co_await state.singers[{5}].ask<&Singer::n_sung>();
   REQUIRE(n_sung == state.n_rounds);
 }
-tess::Task end(State& state, int member) {
+tess::Task end(ChoirState& state, int member) {
   std::erase(state.members, member);
   co_await tess::epoch([&] { state.singers[{member}].destroy(); });
 }
 
 tess::Task begin(std::string folder) {
-  State state{tess::create<Singer>(tess::range(7)), {}, {0, 1, 2, 4, 5}, 0};
+  ChoirState state{tess::create<Singer>(tess::range(7)), {}, {0, 1, 2, 4, 5}, 0};
   co_await tess::epoch([&] {
     state.choir = tess::create_section(state.singers, {{0}, {1}, {2}, {4}, {5}});
   });
@@ -81,7 +81,7 @@ tess::Task begin(std::string folder) {
 }
 /// A member that has ended stays away, also if there is a new element of its index.
 tess::Task go_on(std::string folder, int ends) {
-  State state = co_await tess::restart<State>(folder);
+  ChoirState state = co_await tess::restart<ChoirState>(folder);
   co_await sing(state);
   co_await tess::epoch([&] { state.singers[{1}].insert_on(PeId{tess::n_pes() - 1}); });
   co_await sing(state);
