@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+namespace choir {
 namespace {
 
 using tess::PeId;
@@ -41,7 +42,7 @@ class Singer : public tess::Chare<Singer> {
   int n_sung_ = 0;
 };
 
-struct ChoirState {
+struct State {
   tess::ArrayProxy<Singer> singers;
   tess::SectionProxy<Singer> choir;
   Voices members;
@@ -53,7 +54,7 @@ struct ChoirState {
 };
 
 /// Two elements conduct at the same time; one of them is no member.
-tess::Task sing(ChoirState& state) {
+tess::Task sing(State& state) {
   auto one = state.singers[{0}].ask<&Singer::conduct>(state.choir);
   auto other = state.singers[{3}].ask<&Singer::conduct>(state.choir);
   const Voices of_other = co_await other;
@@ -64,13 +65,13 @@ tess::Task sing(ChoirState& state) {
   const int n_sung = co_await state.singers[{5}].ask<&Singer::n_sung>();
   REQUIRE(n_sung == state.n_rounds);
 }
-tess::Task end(ChoirState& state, int member) {
+tess::Task end(State& state, int member) {
   std::erase(state.members, member);
   co_await tess::epoch([&] { state.singers[{member}].destroy(); });
 }
 
 tess::Task begin(std::string folder) {
-  ChoirState state{tess::create<Singer>(tess::range(7)), {}, {0, 1, 2, 4, 5}, 0};
+  State state{tess::create<Singer>(tess::range(7)), {}, {0, 1, 2, 4, 5}, 0};
   co_await tess::epoch([&] {
     state.choir = tess::create_section(state.singers, {{0}, {1}, {2}, {4}, {5}});
   });
@@ -81,7 +82,7 @@ tess::Task begin(std::string folder) {
 }
 /// A member that has ended stays away, also if there is a new element of its index.
 tess::Task go_on(std::string folder, int ends) {
-  ChoirState state = co_await tess::restart<ChoirState>(folder);
+  State state = co_await tess::restart<State>(folder);
   co_await sing(state);
   co_await tess::epoch([&] { state.singers[{1}].insert_on(PeId{tess::n_pes() - 1}); });
   co_await sing(state);
@@ -114,3 +115,5 @@ TEST_CASE("a section has the same members over restarts, whatever ends and begin
     run([&] { return go_on(folder, 2); }, seed, 5);
   }
 }
+
+}  // namespace choir
