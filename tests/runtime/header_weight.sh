@@ -4,7 +4,7 @@
 set -euo pipefail
 limits=(
   runtime/runtime.hpp 66600
-  collide/collider.hpp 71900
+  collide/collider.hpp 72000
   m2m/coupling.hpp 74000
 )
 if [[ $("$1" --version) != *'(Debian 12.'* ]]; then

@@ -408,7 +408,7 @@ tess::Task votes_of(std::vector<int> voters) {
 tess::Task await_every() {
   tess::Future<void> third;
   int n = 0;
-  (void)tess::every(std::chrono::milliseconds(1), [&] {
+  (void)tess::every(std::chrono::milliseconds(50), [&] {
     if (++n == 3) third.callback()();
   });
   co_await third;

@@ -56,13 +56,13 @@ class Performer {
   virtual void play(std::uint64_t question, Callback<Voices> target) = 0;
 };
 /// Of an array that one asker has for itself.
-class Player : public Chare<Player, Index1>, public Performer {
+class Soloist : public Chare<Soloist, Index1>, public Performer {
  public:
   void play(std::uint64_t question, Callback<Voices> target) override {
     contribute(gather, question, std::move(target));
     move(question);
   }
-  void sing(SectionProxy<Player> choir, std::uint64_t question, Callback<Voices> target) {
+  void sing(SectionProxy<Soloist> choir, std::uint64_t question, Callback<Voices> target) {
     contribute(choir, gather, question, std::move(target));
     move(question);
   }
@@ -132,7 +132,7 @@ class Asker : public Chare<Asker, Index1> {
                        " elements has one that is not there");
   }
 
-  ArrayProxy<Player> players_;
+  ArrayProxy<Soloist> players_;
   std::set<int> alive_;  // players; the first one never ends, so that each round has a result
   std::int32_t n_born_ = 0;
   int n_done_ = 0;
@@ -160,11 +160,11 @@ class Clerk : public Group<Clerk> {
 
 Task Asker::work(Work work) {
   Random random(mix(fair->seed ^ mix(static_cast<std::uint64_t>(work.n_left * 1000 + index().x))));
-  if (players_ == ArrayProxy<Player>()) {
+  if (players_ == ArrayProxy<Soloist>()) {
     n_born_ = 1 + static_cast<std::int32_t>(random.below(6));
     for (int x = 0; x < n_born_; ++x) alive_.insert(x);
     const int n = n_born_;
-    co_await epoch([&] { players_ = tess::create<Player>(range(n)); });
+    co_await epoch([&] { players_ = tess::create<Soloist>(range(n)); });
   }
   if (work.n_left == 0) {
     co_await epoch([&] { players_.destroy(); });
@@ -222,7 +222,7 @@ Task Asker::ask_players(Random& random) {
     bear_one();
     if (random.chance(0.3)) end_one(random);
     result = random.chance(0.5)
-                 ? players_.reduce<&Player::play>(question)
+                 ? players_.reduce<&Soloist::play>(question)
                  : InterfaceArray<Performer>(players_).reduce<&Performer::play>(question);
     bear_one();
   });
@@ -238,7 +238,7 @@ Task Asker::ask_choir(Random& random) {
   for (const int x : alive_)
     if (random.chance(0.6)) members.insert(x);
   const std::uint64_t first = random(), second = random();
-  SectionProxy<Player> choir;
+  SectionProxy<Soloist> choir;
   Future<Voices> one, other;
   const bool waits_for_birth = random.chance(0.3);
   if (waits_for_birth) {
@@ -246,9 +246,9 @@ Task Asker::ask_choir(Random& random) {
     alive_.insert(n_born_);
     co_await epoch([&] {
       choir = create_section(players_, std::vector<Index1>(members.begin(), members.end()));
-      one = choir.reduce<&Player::sing>(choir, first);
+      one = choir.reduce<&Soloist::sing>(choir, first);
       bear(random);
-      other = choir.reduce<&Player::sing>(choir, second);
+      other = choir.reduce<&Soloist::sing>(choir, second);
     });
   } else {
     co_await epoch([&] {
@@ -258,9 +258,9 @@ Task Asker::ask_choir(Random& random) {
       if (random.chance(0.5)) members.erase(end_one(random));
     });
     co_await epoch([&] {
-      one = choir.reduce<&Player::sing>(choir, first);
+      one = choir.reduce<&Soloist::sing>(choir, first);
       if (random.chance(0.5)) end_one(random);
-      other = choir.reduce<&Player::sing>(choir, second);
+      other = choir.reduce<&Soloist::sing>(choir, second);
     });
   }
   std::set<int> must;
