@@ -27,24 +27,24 @@ struct Fair {
 const Fair* fair = nullptr;
 
 /// What all give to a question: the number, sum and extremes of what depends on both.
-struct Tally {
+struct Score {
   std::int64_t n = 0;
   std::uint64_t sum = 0, least = 0, greatest = 0;
-  friend bool operator==(const Tally&, const Tally&) = default;
+  friend bool operator==(const Score&, const Score&) = default;
 };
-struct AddTallies {
-  Tally operator()(Tally a, const Tally& b) const {
+struct AddScores {
+  Score operator()(Score a, const Score& b) const {
     return {a.n + b.n, a.sum + b.sum, std::min(a.least, b.least), std::max(a.greatest, b.greatest)};
   }
 };
-Tally tally_of(std::uint64_t question, int x) {
+Score tally_of(std::uint64_t question, int x) {
   const std::uint64_t value = mix(question ^ static_cast<std::uint64_t>(x));
   return {1, value, value, value};
 }
 /// Of n elements, as a serial program has it.
-Tally tally_of_all(std::uint64_t question, int n) {
-  Tally all = tally_of(question, 0);
-  for (int x = 1; x < n; ++x) all = AddTallies{}(all, tally_of(question, x));
+Score tally_of_all(std::uint64_t question, int n) {
+  Score all = tally_of(question, 0);
+  for (int x = 1; x < n; ++x) all = AddScores{}(all, tally_of(question, x));
   return all;
 }
 
@@ -76,23 +76,23 @@ class Soloist : public Chare<Soloist, Index1>, public Performer {
   }
 };
 
-class Clerk;
+class Usher;
 
-struct Work {
+struct Concert {
   std::int32_t n_left = 0;
-  GroupProxy<Clerk> clerks;
+  GroupProxy<Usher> clerks;
 };
 
 class Asker : public Chare<Asker, Index1> {
  public:
   /// Called by several at once.
-  void count(std::uint64_t question, Callback<Tally> target) {
-    contribute(AddTallies{}, tally_of(question, index().x), std::move(target));
+  void count(std::uint64_t question, Callback<Score> target) {
+    contribute(AddScores{}, tally_of(question, index().x), std::move(target));
     Random random(mix(question + static_cast<std::uint64_t>(index().x)));
     if (random.chance(fair->move_chance)) migrate_to(any_pe(random));
   }
   /// One step, then a message to itself with the next: between them it may migrate.
-  Task work(Work work);
+  Task work(Concert work);
   void report(Callback<int> target) { contribute(sum, n_done_, std::move(target)); }
 
   template <class Ar>
@@ -101,7 +101,7 @@ class Asker : public Chare<Asker, Index1> {
   }
 
  private:
-  Task ask_all(Work work, Random& random);
+  Task ask_all(Concert work, Random& random);
   Task ask_players(Random& random);
   Task ask_choir(Random& random);
   void bear(Random& random) { players_[{n_born_++}].insert_on(any_pe(random)); }
@@ -138,17 +138,17 @@ class Asker : public Chare<Asker, Index1> {
   int n_done_ = 0;
 };
 
-class Clerk : public Group<Clerk> {
+class Usher : public Group<Usher> {
  public:
-  void count(std::uint64_t question, Callback<Tally> target) {
-    contribute(AddTallies{}, tally_of(question, pe().value), std::move(target));
+  void count(std::uint64_t question, Callback<Score> target) {
+    contribute(AddScores{}, tally_of(question, pe().value), std::move(target));
   }
   /// Members ask, too.
   Task work(ArrayProxy<Asker> askers, int n_left) {
     for (; n_left > 0; --n_left) {
       const std::uint64_t question =
           mix(fair->seed + static_cast<std::uint64_t>(n_left * 1000 + pe().value));
-      auto of_clerks = group().reduce<&Clerk::count>(question);
+      auto of_clerks = group().reduce<&Usher::count>(question);
       auto of_askers = askers.reduce<&Asker::count>(question);
       const auto [clerks, all] = co_await when_all(of_clerks, of_askers);
       fair->trial.expect(clerks == tally_of_all(question, tess::n_pes()) &&
@@ -158,7 +158,7 @@ class Clerk : public Group<Clerk> {
   }
 };
 
-Task Asker::work(Work work) {
+Task Asker::work(Concert work) {
   Random random(mix(fair->seed ^ mix(static_cast<std::uint64_t>(work.n_left * 1000 + index().x))));
   if (players_ == ArrayProxy<Soloist>()) {
     n_born_ = 1 + static_cast<std::int32_t>(random.below(6));
@@ -187,14 +187,14 @@ Task Asker::work(Work work) {
 }
 
 /// Several rounds of one array, awaited in any order; others are under way from other elements.
-Task Asker::ask_all(Work work, Random& random) {
+Task Asker::ask_all(Concert work, Random& random) {
   const std::uint64_t first = random(), second = random(), third = random();
   auto one = array().reduce<&Asker::count>(first);
-  auto of_clerks = work.clerks.reduce<&Clerk::count>(second);
+  auto of_clerks = work.clerks.reduce<&Usher::count>(second);
   auto other = array().with(Priority{-1}).reduce<&Asker::count>(third);
-  const Tally of_third = co_await other;
-  const Tally of_first = co_await one;
-  const Tally of_second = co_await of_clerks;
+  const Score of_third = co_await other;
+  const Score of_first = co_await one;
+  const Score of_second = co_await of_clerks;
   fair->trial.expect(of_first == tally_of_all(first, fair->n_askers) &&
                          of_third == tally_of_all(third, fair->n_askers),
                      "an element gets another result of its array");
@@ -273,10 +273,10 @@ Task Asker::ask_choir(Random& random) {
 
 Task hold_fair() {
   const auto askers = tess::create<Asker>(range(fair->n_askers));
-  const auto clerks = create_group<Clerk>();
+  const auto clerks = create_group<Usher>();
   co_await epoch([&] {
-    askers.broadcast<&Asker::work>(Work{fair->n_steps, clerks});
-    clerks.broadcast<&Clerk::work>(askers, fair->n_steps);
+    askers.broadcast<&Asker::work>(Concert{fair->n_steps, clerks});
+    clerks.broadcast<&Usher::work>(askers, fair->n_steps);
   });
   const int n_done = co_await askers.reduce<&Asker::report>();
   fair->trial.expect(n_done == fair->n_askers, n_done, " of ", fair->n_askers,
