@@ -27,24 +27,24 @@ struct Fair {
 const Fair* fair = nullptr;
 
 /// What all give to a question: the number, sum and extremes of what depends on both.
-struct Score {
+struct Tune {
   std::int64_t n = 0;
   std::uint64_t sum = 0, least = 0, greatest = 0;
-  friend bool operator==(const Score&, const Score&) = default;
+  friend bool operator==(const Tune&, const Tune&) = default;
 };
-struct AddScores {
-  Score operator()(Score a, const Score& b) const {
+struct AddTunes {
+  Tune operator()(Tune a, const Tune& b) const {
     return {a.n + b.n, a.sum + b.sum, std::min(a.least, b.least), std::max(a.greatest, b.greatest)};
   }
 };
-Score tally_of(std::uint64_t question, int x) {
+Tune tally_of(std::uint64_t question, int x) {
   const std::uint64_t value = mix(question ^ static_cast<std::uint64_t>(x));
   return {1, value, value, value};
 }
 /// Of n elements, as a serial program has it.
-Score tally_of_all(std::uint64_t question, int n) {
-  Score all = tally_of(question, 0);
-  for (int x = 1; x < n; ++x) all = AddScores{}(all, tally_of(question, x));
+Tune tally_of_all(std::uint64_t question, int n) {
+  Tune all = tally_of(question, 0);
+  for (int x = 1; x < n; ++x) all = AddTunes{}(all, tally_of(question, x));
   return all;
 }
 
@@ -78,7 +78,7 @@ class Soloist : public Chare<Soloist, Index1>, public Performer {
 
 class Usher;
 
-struct Concert {
+struct Recital {
   std::int32_t n_left = 0;
   GroupProxy<Usher> clerks;
 };
@@ -86,13 +86,13 @@ struct Concert {
 class Asker : public Chare<Asker, Index1> {
  public:
   /// Called by several at once.
-  void count(std::uint64_t question, Callback<Score> target) {
-    contribute(AddScores{}, tally_of(question, index().x), std::move(target));
+  void count(std::uint64_t question, Callback<Tune> target) {
+    contribute(AddTunes{}, tally_of(question, index().x), std::move(target));
     Random random(mix(question + static_cast<std::uint64_t>(index().x)));
     if (random.chance(fair->move_chance)) migrate_to(any_pe(random));
   }
   /// One step, then a message to itself with the next: between them it may migrate.
-  Task work(Concert work);
+  Task work(Recital work);
   void report(Callback<int> target) { contribute(sum, n_done_, std::move(target)); }
 
   template <class Ar>
@@ -101,7 +101,7 @@ class Asker : public Chare<Asker, Index1> {
   }
 
  private:
-  Task ask_all(Concert work, Random& random);
+  Task ask_all(Recital work, Random& random);
   Task ask_players(Random& random);
   Task ask_choir(Random& random);
   void bear(Random& random) { players_[{n_born_++}].insert_on(any_pe(random)); }
@@ -140,8 +140,8 @@ class Asker : public Chare<Asker, Index1> {
 
 class Usher : public Group<Usher> {
  public:
-  void count(std::uint64_t question, Callback<Score> target) {
-    contribute(AddScores{}, tally_of(question, pe().value), std::move(target));
+  void count(std::uint64_t question, Callback<Tune> target) {
+    contribute(AddTunes{}, tally_of(question, pe().value), std::move(target));
   }
   /// Members ask, too.
   Task work(ArrayProxy<Asker> askers, int n_left) {
@@ -158,7 +158,7 @@ class Usher : public Group<Usher> {
   }
 };
 
-Task Asker::work(Concert work) {
+Task Asker::work(Recital work) {
   Random random(mix(fair->seed ^ mix(static_cast<std::uint64_t>(work.n_left * 1000 + index().x))));
   if (players_ == ArrayProxy<Soloist>()) {
     n_born_ = 1 + static_cast<std::int32_t>(random.below(6));
@@ -187,14 +187,14 @@ Task Asker::work(Concert work) {
 }
 
 /// Several rounds of one array, awaited in any order; others are under way from other elements.
-Task Asker::ask_all(Concert work, Random& random) {
+Task Asker::ask_all(Recital work, Random& random) {
   const std::uint64_t first = random(), second = random(), third = random();
   auto one = array().reduce<&Asker::count>(first);
   auto of_clerks = work.clerks.reduce<&Usher::count>(second);
   auto other = array().with(Priority{-1}).reduce<&Asker::count>(third);
-  const Score of_third = co_await other;
-  const Score of_first = co_await one;
-  const Score of_second = co_await of_clerks;
+  const Tune of_third = co_await other;
+  const Tune of_first = co_await one;
+  const Tune of_second = co_await of_clerks;
   fair->trial.expect(of_first == tally_of_all(first, fair->n_askers) &&
                          of_third == tally_of_all(third, fair->n_askers),
                      "an element gets another result of its array");
@@ -275,7 +275,7 @@ Task hold_fair() {
   const auto askers = tess::create<Asker>(range(fair->n_askers));
   const auto clerks = create_group<Usher>();
   co_await epoch([&] {
-    askers.broadcast<&Asker::work>(Concert{fair->n_steps, clerks});
+    askers.broadcast<&Asker::work>(Recital{fair->n_steps, clerks});
     clerks.broadcast<&Usher::work>(askers, fair->n_steps);
   });
   const int n_done = co_await askers.reduce<&Asker::report>();

@@ -45,7 +45,7 @@ std::string words_of(int index, std::uint64_t question) {
 }
 
 /// A value with memory of its own.
-struct Parcel {
+struct Postcard {
   std::uint64_t value = 0;
   std::string words;
   std::vector<std::uint64_t> numbers;
@@ -83,7 +83,7 @@ class Awaited : public Chare<Awaited, std::uint64_t> {
   std::uint64_t n_asked_ = 0;
 };
 
-struct Errand {
+struct Chore {
   std::int32_t n_left = 0;
   ArrayProxy<Newcomer> newcomers;
   ArrayProxy<Awaited> demanded;
@@ -105,23 +105,23 @@ class Teller : public Chare<Teller, Index1> {
     co_return mix(of_next + value_of(index().x, question));
   }
   /// Asks all tellers at once.
-  TaskOf<Parcel> collect(std::uint64_t question) {
+  TaskOf<Postcard> collect(std::uint64_t question) {
     std::vector<TaskOf<std::uint64_t>> tasks;
     for (int x = 0; x < office->n_tellers; ++x) tasks.push_back(ask_for(x, question));
-    Parcel letter{0, words_of(index().x, question), {}};
+    Postcard letter{0, words_of(index().x, question), {}};
     letter.numbers = co_await when_all(std::move(tasks));
     for (const std::uint64_t number : letter.numbers) letter.value += number;
     co_return letter;
   }
-  [[nodiscard]] TaskOf<std::unique_ptr<Parcel>> sealed(std::uint64_t question) {
-    Parcel letter = co_await collect(question);
-    co_return std::make_unique<Parcel>(std::move(letter));
+  [[nodiscard]] TaskOf<std::unique_ptr<Postcard>> sealed(std::uint64_t question) {
+    Postcard letter = co_await collect(question);
+    co_return std::make_unique<Postcard>(std::move(letter));
   }
   void bring(ArrayProxy<Newcomer> newcomers, std::uint64_t name) { newcomers[name].insert(); }
   void never() { office->trial.expect(false, "a timer that was cancelled elsewhere runs"); }
 
   /// One step, then a message to itself with the next: between them it may migrate.
-  Task work(Errand work) {
+  Task work(Chore work) {
     Random random(
         mix(office->seed ^ mix(static_cast<std::uint64_t>(work.n_left * 1000 + index().x))));
     if (random.chance(0.5)) {
@@ -199,7 +199,7 @@ class Teller : public Chare<Teller, Index1> {
     office->trial.expect(sealed != nullptr, "a letter is lost");
     if (sealed) check_letter(*sealed, other, question);
   }
-  Task ask_newcomer(Errand work, Random& random) {
+  Task ask_newcomer(Chore work, Random& random) {
     const std::uint64_t name = random(), question = random();
     const auto bring = [&] { array()[{draw(random)}].send<&Teller::bring>(work.newcomers, name); };
     const bool first = random.chance(0.3);
@@ -212,7 +212,7 @@ class Teller : public Chare<Teller, Index1> {
     office->trial.expect(value == value_of(7, question ^ name), "another value of a newcomer");
     if (random.chance(0.5)) work.newcomers[name].destroy();
   }
-  Task ask_demanded(Errand work, Random& random) {
+  Task ask_demanded(Chore work, Random& random) {
     const std::uint64_t name = random();
     const auto element = work.demanded[name];
     const int n = 1 + static_cast<int>(random.below(4));
@@ -250,7 +250,7 @@ class Teller : public Chare<Teller, Index1> {
     office->trial.expect(std::string(error.what()).starts_with("refused "),
                          "another error: ", error.what());
   }
-  static void check_letter(const Parcel& letter, int from, std::uint64_t question) {
+  static void check_letter(const Postcard& letter, int from, std::uint64_t question) {
     std::uint64_t want = 0;
     for (int x = 0; x < office->n_tellers; ++x) want += value_of(x, question / 11 * 11 + 1);
     office->trial.expect(letter.value == want && letter.words == words_of(from, question) &&
@@ -272,7 +272,7 @@ TaskOf<int> count_done(ArrayProxy<Teller> tellers) {
 
 Task open_office(std::uint64_t seed) {
   const auto tellers = tess::create<Teller>(range(office->n_tellers));
-  const Errand work{office->n_steps, tess::create<Newcomer>(sparse), tess::create<Awaited>(sparse)};
+  const Chore work{office->n_steps, tess::create<Newcomer>(sparse), tess::create<Awaited>(sparse)};
   const Time began = now();
   co_await epoch([&] { tellers.broadcast<&Teller::work>(work); });
   office->trial.expect(now() - began < std::chrono::hours(1), "an epoch waits for dead timers");
@@ -280,7 +280,7 @@ Task open_office(std::uint64_t seed) {
   office->trial.expect(n_done == office->n_tellers, n_done, " tellers of ", office->n_tellers,
                        " have done their work");
   // The main coroutine asks, too.
-  const Parcel letter = co_await tellers[{0}].ask<&Teller::collect>(seed);
+  const Postcard letter = co_await tellers[{0}].ask<&Teller::collect>(seed);
   office->trial.expect(letter.words == words_of(0, seed), "the main coroutine has another letter");
 }
 
