@@ -100,6 +100,7 @@ refuses "--move .* does not work with --study" "${alone[@]}" --study steps --mov
 refuses "--pairs B:A does not work with --study" "${alone[@]}" --study h --pairs B:A
 refuses "MORE kuhn:4 does not work with fields and weights" "${alone[@]}" kuhn:4 --weights "$scratch/w.nc"
 refuses "--repeat 3 does not work with fields and weights" "${alone[@]}" --repeat 3 --weights "$scratch/w.nc"
+refuses "--out .* does not work with --kind all" "${alone[@]}" --kind all --out "$scratch/all.exo"
 refuses "--picture .* --kind all" "${alone[@]}" --kind all --picture "$scratch/cut.svg"
 refuses "--kind all does not work with --study steps" "${alone[@]}" --kind all --study steps
 refuses "--policy nearest is for kinds that interpolate, and conservative" "${alone[@]}" --kind all --policy nearest

@@ -145,14 +145,14 @@ TEST_CASE("a checkpoint of another version is refused by name", "[runtime][check
             bytes[8] = 9;
             write_bytes(path + "pe-1", bytes);
           }),
-          "pe-1", "has version 9, but this program reads 5");
+          "pe-1", "has version 9, but this program reads 6");
   refused(after([](const std::string& path) {
             std::string text = tess::test::slurp(path + "manifest.json");
-            const std::string one = "\"tessera_checkpoint\": 5";
+            const std::string one = "\"tessera_checkpoint\": 6";
             text.replace(text.find(one), one.size(), "\"tessera_checkpoint\": 8");
             write_bytes(path + "manifest.json", text);
           }),
-          "manifest.json", "has version 8, but this program reads 5");
+          "manifest.json", "has version 8, but this program reads 6");
 }
 
 TEST_CASE("a checkpoint that a killed run left unfinished is refused, and removed by the next one",

@@ -189,8 +189,6 @@ TEST_CASE("kind all is refused where one result is wanted", "[apps][study]") {
     Setup setup{make_threads_machine(1), {}};
     return drive(setup, one);
   };
-  CHECK(code([](DriverOptions& o) { o.out = "/tmp/never.exo"; }) == 2);
-  CHECK(code([](DriverOptions& o) { o.picture = "/tmp/never.svg"; }) == 2);
   CHECK(code([](DriverOptions& o) { o.study = "steps"; }) == 2);
   CHECK(code([](DriverOptions& o) { o.request.clamp = true; }) == 2);
   CHECK(code([](DriverOptions& o) { o.request.tolerance = 0.1; }) == 2);
