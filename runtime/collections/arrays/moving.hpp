@@ -43,7 +43,12 @@ void ArrayOf<Index>::ship(Indexed& element, PeId to, Memberships&& memberships) 
 #ifdef TESS_CHECKS_ALL
   // Within a process the element is also rebuilt from its bytes, so members that serialize()
   // omits are lost on one PE as they are on a cluster.
-  arrival->pack_state();
+  try {
+    arrival->pack_state();
+  } catch (...) {
+    Arrival<Index>::destroy(arrival);
+    throw;
+  }
 #endif
   pe_.send(to, arrival);
 }
