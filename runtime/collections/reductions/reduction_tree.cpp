@@ -41,10 +41,11 @@ bool Cause::merge(const Cause& more) {
 }
 
 bool Reported::merge(Reported&& more) {
-  Gathered::merge(std::move(more));
   change += more.change;
   note(std::move(more.newcomer));
-  return cause.merge(more.cause);
+  const bool is_earlier = cause.merge(more.cause);
+  Gathered::merge(std::move(more));
+  return is_earlier;
 }
 
 bool ReductionTree::learn(std::uint32_t number, std::uint32_t led_by) {
