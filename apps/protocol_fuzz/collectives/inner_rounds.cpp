@@ -27,24 +27,24 @@ struct Fair {
 const Fair* fair = nullptr;
 
 /// What all give to a question: the number, sum and extremes of what depends on both.
-struct Tune {
+struct RoundSum {
   std::int64_t n = 0;
   std::uint64_t sum = 0, least = 0, greatest = 0;
-  friend bool operator==(const Tune&, const Tune&) = default;
+  friend bool operator==(const RoundSum&, const RoundSum&) = default;
 };
-struct AddTunes {
-  Tune operator()(Tune a, const Tune& b) const {
+struct AddRoundSums {
+  RoundSum operator()(RoundSum a, const RoundSum& b) const {
     return {a.n + b.n, a.sum + b.sum, std::min(a.least, b.least), std::max(a.greatest, b.greatest)};
   }
 };
-Tune tally_of(std::uint64_t question, int x) {
+RoundSum sum_of(std::uint64_t question, int x) {
   const std::uint64_t value = mix(question ^ static_cast<std::uint64_t>(x));
   return {1, value, value, value};
 }
 /// Of n elements, as a serial program has it.
-Tune tally_of_all(std::uint64_t question, int n) {
-  Tune all = tally_of(question, 0);
-  for (int x = 1; x < n; ++x) all = AddTunes{}(all, tally_of(question, x));
+RoundSum sum_of_all(std::uint64_t question, int n) {
+  RoundSum all = sum_of(question, 0);
+  for (int x = 1; x < n; ++x) all = AddRoundSums{}(all, sum_of(question, x));
   return all;
 }
 
@@ -78,7 +78,7 @@ class Soloist : public Chare<Soloist, Index1>, public Performer {
 
 class Usher;
 
-struct Recital {
+struct AskerWork {
   std::int32_t n_left = 0;
   GroupProxy<Usher> clerks;
 };
@@ -86,13 +86,13 @@ struct Recital {
 class Asker : public Chare<Asker, Index1> {
  public:
   /// Called by several at once.
-  void count(std::uint64_t question, Callback<Tune> target) {
-    contribute(AddTunes{}, tally_of(question, index().x), std::move(target));
+  void count(std::uint64_t question, Callback<RoundSum> target) {
+    contribute(AddRoundSums{}, sum_of(question, index().x), std::move(target));
     Random random(mix(question + static_cast<std::uint64_t>(index().x)));
     if (random.chance(fair->move_chance)) migrate_to(any_pe(random));
   }
   /// One step, then a message to itself with the next: between them it may migrate.
-  Task work(Recital work);
+  Task work(AskerWork work);
   void report(Callback<int> target) { contribute(sum, n_done_, std::move(target)); }
 
   template <class Ar>
@@ -101,7 +101,7 @@ class Asker : public Chare<Asker, Index1> {
   }
 
  private:
-  Task ask_all(Recital work, Random& random);
+  Task ask_all(AskerWork work, Random& random);
   Task ask_players(Random& random);
   Task ask_choir(Random& random);
   void bear(Random& random) { players_[{n_born_++}].insert_on(any_pe(random)); }
@@ -140,8 +140,8 @@ class Asker : public Chare<Asker, Index1> {
 
 class Usher : public Group<Usher> {
  public:
-  void count(std::uint64_t question, Callback<Tune> target) {
-    contribute(AddTunes{}, tally_of(question, pe().value), std::move(target));
+  void count(std::uint64_t question, Callback<RoundSum> target) {
+    contribute(AddRoundSums{}, sum_of(question, pe().value), std::move(target));
   }
   /// Members ask, too.
   Task work(ArrayProxy<Asker> askers, int n_left) {
@@ -151,14 +151,14 @@ class Usher : public Group<Usher> {
       auto of_clerks = group().reduce<&Usher::count>(question);
       auto of_askers = askers.reduce<&Asker::count>(question);
       const auto [clerks, all] = co_await when_all(of_clerks, of_askers);
-      fair->trial.expect(clerks == tally_of_all(question, tess::n_pes()) &&
-                             all == tally_of_all(question, fair->n_askers),
+      fair->trial.expect(clerks == sum_of_all(question, tess::n_pes()) &&
+                             all == sum_of_all(question, fair->n_askers),
                          "a member gets another result");
     }
   }
 };
 
-Task Asker::work(Recital work) {
+Task Asker::work(AskerWork work) {
   Random random(mix(fair->seed ^ mix(static_cast<std::uint64_t>(work.n_left * 1000 + index().x))));
   if (players_ == ArrayProxy<Soloist>()) {
     n_born_ = 1 + static_cast<std::int32_t>(random.below(6));
@@ -187,18 +187,18 @@ Task Asker::work(Recital work) {
 }
 
 /// Several rounds of one array, awaited in any order; others are under way from other elements.
-Task Asker::ask_all(Recital work, Random& random) {
+Task Asker::ask_all(AskerWork work, Random& random) {
   const std::uint64_t first = random(), second = random(), third = random();
   auto one = array().reduce<&Asker::count>(first);
   auto of_clerks = work.clerks.reduce<&Usher::count>(second);
   auto other = array().with(Priority{-1}).reduce<&Asker::count>(third);
-  const Tune of_third = co_await other;
-  const Tune of_first = co_await one;
-  const Tune of_second = co_await of_clerks;
-  fair->trial.expect(of_first == tally_of_all(first, fair->n_askers) &&
-                         of_third == tally_of_all(third, fair->n_askers),
+  const RoundSum of_third = co_await other;
+  const RoundSum of_first = co_await one;
+  const RoundSum of_second = co_await of_clerks;
+  fair->trial.expect(of_first == sum_of_all(first, fair->n_askers) &&
+                         of_third == sum_of_all(third, fair->n_askers),
                      "an element gets another result of its array");
-  fair->trial.expect(of_second == tally_of_all(second, tess::n_pes()),
+  fair->trial.expect(of_second == sum_of_all(second, tess::n_pes()),
                      "an element gets another result of a group");
 }
 
@@ -275,7 +275,7 @@ Task hold_fair() {
   const auto askers = tess::create<Asker>(range(fair->n_askers));
   const auto clerks = create_group<Usher>();
   co_await epoch([&] {
-    askers.broadcast<&Asker::work>(Recital{fair->n_steps, clerks});
+    askers.broadcast<&Asker::work>(AskerWork{fair->n_steps, clerks});
     clerks.broadcast<&Usher::work>(askers, fair->n_steps);
   });
   const int n_done = co_await askers.reduce<&Asker::report>();

@@ -35,14 +35,14 @@ struct Inn {
 };
 const Inn* inn = nullptr;
 
-struct Goodbye {
+struct GuestLetter {
   std::int32_t round = 0;
   std::uint64_t text = 0;
 };
 /// A letter that a guest asks a host for.
 struct Request {
   std::int32_t guest = 0;
-  Goodbye letter;
+  GuestLetter letter;
 };
 
 class Lodger;
@@ -56,21 +56,21 @@ struct Stay {
 
 class Lodger : public Chare<Lodger, Index1> {
  public:
-  void receive(Goodbye letter) {
+  void receive(GuestLetter letter) {
     if (is_guest()) letters_.put(letter);
   }
-  void receive_and_move(Goodbye letter, PeId pe) {
+  void receive_and_move(GuestLetter letter, PeId pe) {
     receive(letter);
     migrate_to(pe);
   }
   /// A broadcast.
-  void hear(Goodbye news, Callback<std::int32_t> n_heard) {
+  void hear(GuestLetter news, Callback<std::int32_t> n_heard) {
     receive(news);
     contribute(sum, 1, std::move(n_heard));
     move(news);
   }
   /// A multicast.
-  void sing(SectionProxy<Lodger> choir, Goodbye call, Callback<std::int32_t> n_heard) {
+  void sing(SectionProxy<Lodger> choir, GuestLetter call, Callback<std::int32_t> n_heard) {
     receive(call);
     contribute(choir, sum, 1, std::move(n_heard));
     move(call);
@@ -143,7 +143,7 @@ class Lodger : public Chare<Lodger, Index1> {
           }
           [[fallthrough]];
         case 1: {
-          const Goodbye letter = co_await letters_.take(stay.round);
+          const GuestLetter letter = co_await letters_.take(stay.round);
           got += letter.text;
           --n_left;
           break;
@@ -165,7 +165,7 @@ class Lodger : public Chare<Lodger, Index1> {
           break;
         }
         default:
-          co_await epoch([&] { host(random).send<&Lodger::receive>(Goodbye{}); });
+          co_await epoch([&] { host(random).send<&Lodger::receive>(GuestLetter{}); });
       }
       if (end == 2) destroy();
     }
@@ -189,12 +189,12 @@ class Lodger : public Chare<Lodger, Index1> {
   [[nodiscard]] ElementProxy<Lodger> host(Random& random) const {
     return array()[{static_cast<int>(random.below(static_cast<std::uint64_t>(inn->n_hosts)))}];
   }
-  void move(const Goodbye& why) {
+  void move(const GuestLetter& why) {
     Random random(mix(why.text + static_cast<std::uint64_t>(index().x)));
     if (random.chance(inn->move_chance)) migrate_to(any_pe(random));
   }
 
-  Mailbox<&Goodbye::round> letters_;
+  Mailbox<&GuestLetter::round> letters_;
 };
 
 /// Counts the guests that have left.
@@ -222,19 +222,19 @@ Task stay_and_leave() {
     co_await epoch([&] {
       for (int x = inn->n_hosts; x < inn->n_elements(); ++x)
         if (inn->travels(round, x))
-          lodgers[{x}].send<&Lodger::receive_and_move>(Goodbye{round, inn->text(round, 200 + x)},
-                                                       any_pe(random));
+          lodgers[{x}].send<&Lodger::receive_and_move>(
+              GuestLetter{round, inn->text(round, 200 + x)}, any_pe(random));
       const bool leaves_first = random.chance(0.5);
       if (leaves_first) lodgers.broadcast<&Lodger::leave>(stay);
       for (int n = 0; n < stay.n_news; ++n) {
-        const Goodbye news{round, inn->text(round, n)};
+        const GuestLetter news{round, inn->text(round, n)};
         const auto priority = static_cast<std::int64_t>(random.below(3));
         of_all.push_back(priority == 0
                              ? lodgers.reduce<&Lodger::hear>(news)
                              : lodgers.with(Priority{priority - 2}).reduce<&Lodger::hear>(news));
       }
       for (int n = 0; n < stay.n_calls; ++n) {
-        const Goodbye call{round, inn->text(round, 100 + n)};
+        const GuestLetter call{round, inn->text(round, 100 + n)};
         of_choir.push_back(stay.choir.reduce<&Lodger::sing>(stay.choir, call));
       }
       if (!leaves_first) lodgers.with(expedited).broadcast<&Lodger::leave>(stay);

@@ -45,7 +45,7 @@ std::string words_of(int index, std::uint64_t question) {
 }
 
 /// A value with memory of its own.
-struct Postcard {
+struct ReplyLetter {
   std::uint64_t value = 0;
   std::string words;
   std::vector<std::uint64_t> numbers;
@@ -62,13 +62,13 @@ class Newcomer : public Chare<Newcomer, std::uint64_t> {
   void serialize(Ar& /*ar*/) {}
 };
 /// Is created by what asks it.
-class Awaited : public Chare<Awaited, std::uint64_t> {
+class MadeOnDemand : public Chare<MadeOnDemand, std::uint64_t> {
  public:
   TaskOf<std::uint64_t> at_home(std::uint64_t question) { return count(question); }
   TaskOf<std::uint64_t> here(std::uint64_t question) { return count(question); }
   void move_on(PeId pe) { migrate_to(pe); }
-  using EntryAttributes = Attributes<EntryMethod<&Awaited::at_home, create_home>,
-                                     EntryMethod<&Awaited::here, create_here, Priority{-3}>>;
+  using EntryAttributes = Attributes<EntryMethod<&MadeOnDemand::at_home, create_home>,
+                                     EntryMethod<&MadeOnDemand::here, create_here, Priority{-3}>>;
   template <class Ar>
   void serialize(Ar& ar) {
     ar(n_asked_);
@@ -83,10 +83,10 @@ class Awaited : public Chare<Awaited, std::uint64_t> {
   std::uint64_t n_asked_ = 0;
 };
 
-struct Chore {
+struct TellerWork {
   std::int32_t n_left = 0;
   ArrayProxy<Newcomer> newcomers;
-  ArrayProxy<Awaited> demanded;
+  ArrayProxy<MadeOnDemand> demanded;
 };
 
 class Teller : public Chare<Teller, Index1> {
@@ -105,23 +105,23 @@ class Teller : public Chare<Teller, Index1> {
     co_return mix(of_next + value_of(index().x, question));
   }
   /// Asks all tellers at once.
-  TaskOf<Postcard> collect(std::uint64_t question) {
+  TaskOf<ReplyLetter> collect(std::uint64_t question) {
     std::vector<TaskOf<std::uint64_t>> tasks;
     for (int x = 0; x < office->n_tellers; ++x) tasks.push_back(ask_for(x, question));
-    Postcard letter{0, words_of(index().x, question), {}};
+    ReplyLetter letter{0, words_of(index().x, question), {}};
     letter.numbers = co_await when_all(std::move(tasks));
     for (const std::uint64_t number : letter.numbers) letter.value += number;
     co_return letter;
   }
-  [[nodiscard]] TaskOf<std::unique_ptr<Postcard>> sealed(std::uint64_t question) {
-    Postcard letter = co_await collect(question);
-    co_return std::make_unique<Postcard>(std::move(letter));
+  [[nodiscard]] TaskOf<std::unique_ptr<ReplyLetter>> sealed(std::uint64_t question) {
+    ReplyLetter letter = co_await collect(question);
+    co_return std::make_unique<ReplyLetter>(std::move(letter));
   }
   void bring(ArrayProxy<Newcomer> newcomers, std::uint64_t name) { newcomers[name].insert(); }
   void never() { office->trial.expect(false, "a timer that was cancelled elsewhere runs"); }
 
   /// One step, then a message to itself with the next: between them it may migrate.
-  Task work(Chore work) {
+  Task work(TellerWork work) {
     Random random(
         mix(office->seed ^ mix(static_cast<std::uint64_t>(work.n_left * 1000 + index().x))));
     if (random.chance(0.5)) {
@@ -139,7 +139,7 @@ class Teller : public Chare<Teller, Index1> {
         co_await ask_newcomer(work, random);
         break;
       case 3:
-        co_await ask_demanded(work, random);
+        co_await ask_on_demand(work, random);
         break;
       case 4:
         co_await ask_in_time(random);
@@ -199,7 +199,7 @@ class Teller : public Chare<Teller, Index1> {
     office->trial.expect(sealed != nullptr, "a letter is lost");
     if (sealed) check_letter(*sealed, other, question);
   }
-  Task ask_newcomer(Chore work, Random& random) {
+  Task ask_newcomer(TellerWork work, Random& random) {
     const std::uint64_t name = random(), question = random();
     const auto bring = [&] { array()[{draw(random)}].send<&Teller::bring>(work.newcomers, name); };
     const bool first = random.chance(0.3);
@@ -212,7 +212,7 @@ class Teller : public Chare<Teller, Index1> {
     office->trial.expect(value == value_of(7, question ^ name), "another value of a newcomer");
     if (random.chance(0.5)) work.newcomers[name].destroy();
   }
-  Task ask_demanded(Chore work, Random& random) {
+  Task ask_on_demand(TellerWork work, Random& random) {
     const std::uint64_t name = random();
     const auto element = work.demanded[name];
     const int n = 1 + static_cast<int>(random.below(4));
@@ -220,9 +220,9 @@ class Teller : public Chare<Teller, Index1> {
       const std::uint64_t question = random();
       std::uint64_t value = 0;
       if (random.chance(0.5)) {
-        value = co_await element.ask<&Awaited::at_home>(question);
+        value = co_await element.ask<&MadeOnDemand::at_home>(question);
       } else {
-        value = co_await element.ask<&Awaited::here>(question);
+        value = co_await element.ask<&MadeOnDemand::here>(question);
       }
       office->trial.expect(
           value == (static_cast<std::uint64_t>(k) << 32U | value_of(8, question) >> 32U),
@@ -250,7 +250,7 @@ class Teller : public Chare<Teller, Index1> {
     office->trial.expect(std::string(error.what()).starts_with("refused "),
                          "another error: ", error.what());
   }
-  static void check_letter(const Postcard& letter, int from, std::uint64_t question) {
+  static void check_letter(const ReplyLetter& letter, int from, std::uint64_t question) {
     std::uint64_t want = 0;
     for (int x = 0; x < office->n_tellers; ++x) want += value_of(x, question / 11 * 11 + 1);
     office->trial.expect(letter.value == want && letter.words == words_of(from, question) &&
@@ -272,7 +272,8 @@ TaskOf<int> count_done(ArrayProxy<Teller> tellers) {
 
 Task open_office(std::uint64_t seed) {
   const auto tellers = tess::create<Teller>(range(office->n_tellers));
-  const Chore work{office->n_steps, tess::create<Newcomer>(sparse), tess::create<Awaited>(sparse)};
+  const TellerWork work{office->n_steps, tess::create<Newcomer>(sparse),
+                        tess::create<MadeOnDemand>(sparse)};
   const Time began = now();
   co_await epoch([&] { tellers.broadcast<&Teller::work>(work); });
   office->trial.expect(now() - began < std::chrono::hours(1), "an epoch waits for dead timers");
@@ -280,7 +281,7 @@ Task open_office(std::uint64_t seed) {
   office->trial.expect(n_done == office->n_tellers, n_done, " tellers of ", office->n_tellers,
                        " have done their work");
   // The main coroutine asks, too.
-  const Postcard letter = co_await tellers[{0}].ask<&Teller::collect>(seed);
+  const ReplyLetter letter = co_await tellers[{0}].ask<&Teller::collect>(seed);
   office->trial.expect(letter.words == words_of(0, seed), "the main coroutine has another letter");
 }
 
