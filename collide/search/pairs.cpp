@@ -1,6 +1,7 @@
 // The plan of a search: which sets are compared, on one level or on several.
 #include "collide/pairs.hpp"
 
+#include "collide/search/choose_pieces.hpp"
 #include "collide/search/instantiate.hpp"
 #include "collide/search/size_classes.hpp"
 #include "collide/search/survey.hpp"
@@ -193,10 +194,6 @@ struct Models {
   int n = 0;
   std::uint32_t second = 0;
 };
-/// Whether models leave pairs out.
-bool divides(const PairOptions& options) {
-  return !options.models.empty() && options.within_model == WithinModel::skip;
-}
 Models count(std::span<const std::uint32_t> models) {
   Models out{models.empty() ? 0 : 1, 0};
   for (const std::uint32_t model : models) {
