@@ -3,6 +3,7 @@
 //     m2m_scaling kuhn:80 kuhn:81 --pes 1,16,64,256
 //     m2m_scaling kuhn:200 kuhn:201 --pes 64,128,256,512,1024,2048 --out scaling
 #include "apps/command_line.hpp"
+#include "apps/m2m_scaling/own_process.hpp"
 #include "apps/m2m_scaling/report.hpp"
 #include "apps/m2m_transfer/run/measure.hpp"
 #include "apps/plot/write_file.hpp"
@@ -22,13 +23,12 @@ namespace {
 
 using m2m_transfer::Request;
 
-bool has_values_of(const TransferReport& a, const TransferReport& b) {
+bool has_values_of(const Row& a, const Row& b) {
   return a.result_hash == b.result_hash && a.tally.counts == b.tally.counts;
 }
 
-/// Runs on a machine of its own. Returns the exit code.
-int run_case(const Request& request, const tess::SimulatedOptions& machine,
-             TransferReport& report) {
+/// One run. Returns the exit code.
+int run_once(const Request& request, const tess::SimulatedOptions& machine, Row& row) {
   apps::Progress progress(stderr);
   tess::Setup setup{tess::make_simulated_machine(machine), {}};
   setup.options.seed = machine.seed.value_or(1);
@@ -37,8 +37,27 @@ int run_case(const Request& request, const tess::SimulatedOptions& machine,
     m2m_transfer::Problem problem = co_await m2m_transfer::load(request);
     problem.collects = true;  // the time of it is a column
     co_await m2m_transfer::measure(problem, tess::create_group<m2m_transfer::Gauge>(), progress);
-    report = problem.reports.front();
+    const m2m_transfer::TransferReport& report = problem.reports.front();
+    row = {report.pes, report.seconds, report.tally, report.result_hash};
   });
+}
+
+/// The fastest of several runs. Returns the exit code.
+int run_fastest(const Request& request, const tess::SimulatedOptions& machine, std::int32_t n_runs,
+                Row& best) {
+  if (const int code = run_once(request, machine, best); code != 0) return code;
+  for (std::int32_t i = 1; i < n_runs; ++i) {
+    Row next;
+    if (const int code = run_once(request, machine, next); code != 0) return code;
+    if (!has_values_of(next, best)) {  // it is not repeated away
+      fmt::print(stderr, "m2m_scaling: two runs on {} PEs give different values\n", machine.n_pes);
+      return 1;
+    }
+    const double gather = std::min(best.seconds.gather, next.seconds.gather);
+    if (distributed_seconds(next) < distributed_seconds(best)) best = next;
+    best.seconds.gather = gather;
+  }
+  return 0;
 }
 
 /// The machines of --sim with so many PEs each. That of one PE has one process.
@@ -79,29 +98,18 @@ int study(int argc, char** argv) {
   if (!out.empty())
     for (const char* end : {".svg", ".csv"}) plot::require_writable("--out", out + end);
   std::ranges::sort(pes);
-  std::vector<TransferReport> rows;
+  std::vector<Row> rows;
   for (const tess::SimulatedOptions& machine : machines_of(sim, pes)) {
-    TransferReport best;
-    if (const int code = run_case(request, machine, best); code != 0) return code;
-    for (std::int32_t i = 1; i < repeat; ++i) {
-      TransferReport next;
-      if (const int code = run_case(request, machine, next); code != 0) return code;
-      if (!has_values_of(next, best)) {  // it is not repeated away
-        fmt::print(stderr, "m2m_scaling: two runs on {} PEs give different values\n",
-                   machine.n_pes);
-        return 1;
-      }
-      const double gather = std::min(best.seconds.gather, next.seconds.gather);
-      if (distributed_seconds(next) < distributed_seconds(best)) best = std::move(next);
-      best.seconds.gather = gather;
-    }
-    if (rows.empty()) fmt::print("{}", head());
-    rows.push_back(std::move(best));
-    fmt::print("{}", m2m_scaling::line(rows.back(), rows.front()));
+    Row row;
+    const auto run = [&](Row& best) { return run_fastest(request, machine, repeat, best); };
+    if (const int code = in_own_process(argv[0], run, row); code != 0) return code;
+    rows.push_back(row);
+    if (rows.size() == 1) fmt::print("{}", head());
+    fmt::print("{}", m2m_scaling::line(row, rows.front()));
     std::fflush(stdout);
   }
-  if (!out.empty()) draw(out, rows);
-  for (const TransferReport& row : rows)
+  if (!out.empty()) draw(out, request.source + " to " + request.target, rows);
+  for (const Row& row : rows)
     if (!has_values_of(row, rows.front())) {
       fmt::print(stderr, "m2m_scaling: {} PEs give other values than {}\n", row.pes,
                  rows.front().pes);

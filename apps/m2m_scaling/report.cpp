@@ -8,18 +8,17 @@
 namespace m2m_scaling {
 namespace {
 
-double efficiency(double seconds, const TransferReport& row, double first_seconds,
-                  const TransferReport& first) {
+double efficiency(double seconds, const Row& row, double first_seconds, const Row& first) {
   return first_seconds * first.pes / (seconds * row.pes);
 }
 
 }  // namespace
 
-double distributed_seconds(const TransferReport& row) {
+double distributed_seconds(const Row& row) {
   return row.seconds.setup + row.seconds.transfer();
 }
 
-double gathered_seconds(const TransferReport& row) {
+double gathered_seconds(const Row& row) {
   return distributed_seconds(row) + row.seconds.gather;
 }
 
@@ -29,7 +28,7 @@ std::string head() {
          "| efficiency |\n|---|---|---|---|---|---|---|---|---|---|\n";
 }
 
-std::string line(const TransferReport& row, const TransferReport& first) {
+std::string line(const Row& row, const Row& first) {
   const m2m_transfer::PhaseSeconds& s = row.seconds;
   const double here = distributed_seconds(row), gathered = gathered_seconds(row);
   return fmt::format(
@@ -40,30 +39,26 @@ std::string line(const TransferReport& row, const TransferReport& first) {
       100 * efficiency(gathered, row, gathered_seconds(first), first));
 }
 
-void draw(const std::string& prefix, const std::vector<TransferReport>& rows) {
-  plot::Chart chart{.title = rows.front().source + " to " + rows.front().target,
-                    .x_label = "PEs",
-                    .y_label = "seconds",
-                    .x_log = true,
-                    .y_log = true};
-  for (const TransferReport& row : rows) chart.x_ticks.push_back(row.pes);
-  const auto add = [&](const char* name, const std::function<double(const TransferReport&)>& of,
+void draw(const std::string& prefix, const std::string& title, const std::vector<Row>& rows) {
+  plot::Chart chart{
+      .title = title, .x_label = "PEs", .y_label = "seconds", .x_log = true, .y_log = true};
+  for (const Row& row : rows) chart.x_ticks.push_back(row.pes);
+  const auto add = [&](const char* name, const std::function<double(const Row&)>& of,
                        plot::Style style = plot::Style::lines_points) {
     plot::Series series{.name = name, .style = style};
-    for (const TransferReport& row : rows)
-      series.points.push_back({static_cast<double>(row.pes), of(row)});
+    for (const Row& row : rows) series.points.push_back({static_cast<double>(row.pes), of(row)});
     chart.series.push_back(std::move(series));
   };
-  add("set-up", [](const TransferReport& r) { return r.seconds.setup; });
-  add("broad", [](const TransferReport& r) { return r.seconds.broad; });
-  add("narrow", [](const TransferReport& r) { return r.seconds.narrow; });
-  add("apply", [](const TransferReport& r) { return r.seconds.apply; });
+  add("set-up", [](const Row& r) { return r.seconds.setup; });
+  add("broad", [](const Row& r) { return r.seconds.broad; });
+  add("narrow", [](const Row& r) { return r.seconds.narrow; });
+  add("apply", [](const Row& r) { return r.seconds.apply; });
   add("together", distributed_seconds);
   add("together and gathered", gathered_seconds);
-  const TransferReport& first = rows.front();
+  const Row& first = rows.front();
   add(
       "together, ideal",
-      [&](const TransferReport& r) { return distributed_seconds(first) * first.pes / r.pes; },
+      [&](const Row& r) { return distributed_seconds(first) * first.pes / r.pes; },
       plot::Style::dashes);
   (void)plot::write_svg(prefix + ".svg", chart);
 }

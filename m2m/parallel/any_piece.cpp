@@ -40,10 +40,19 @@ void AnyPiece::m2m_ask(CouplingId id) {
     m2m_send<&AnyPiece::m2m_answer>(to.setup.source, source, std::move(query));
   m2m_ask_on(to);
 }
-void AnyPiece::m2m_answer(const DonorQuery& query) {
-  SourceSide& from = m2m_sides().source(query.coupling);
-  m2m_send<&AnyPiece::m2m_receive_donors>(from.setup.target, query.from,
-                                          from.answer(m2m_view(), query));
+void AnyPiece::m2m_answer(DonorQuery query) {
+  const CouplingId id = query.coupling;
+  SourceSide& from = m2m_sides().source(id);
+  // Behind the queries that are in the queue of this PE.
+  if (from.add(std::move(query)))
+    from.setup.source.template send<&AnyPiece::m2m_answer_all>(m2m_owner(), id);
+}
+void AnyPiece::m2m_answer_all(CouplingId id) {
+  SourceSide& from = m2m_sides().source(id);
+  std::uint64_t n_tested = 0;
+  for (auto& [target, answer] : from.answers(m2m_view(), n_tested))
+    m2m_send<&AnyPiece::m2m_receive_donors>(from.setup.target, target, std::move(answer));
+  from.setup.ledger.local().add(Tally{.n_candidates = n_tested});
 }
 void AnyPiece::m2m_receive_donors(const DonorAnswer& answer) {
   TargetSide& to = m2m_sides().target(answer.coupling);

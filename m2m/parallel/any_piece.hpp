@@ -7,7 +7,8 @@
 //   submit     boxes of its cover       → collider ←    boxes around its points
 //   hits                                                collects the source pieces near
 //   ask                                 ← DonorQuery    sends its points there
-//   answer     locates the points       DonorAnswer →   keeps the best candidate of each
+//   answer     locates the points,      DonorAnswer →   keeps the best candidate of each
+//              those of all queries that have arrived in one pass over its tetrahedra
 //   outside    its nearest vertex       ← NearestQuery  if the policy says so
 //                                       NearestAnswer →
 //   choose     keeps what was chosen    ← Choice        decides
@@ -84,7 +85,8 @@ class AnyPiece {
   void m2m_submit_target(const CouplingSetup& setup);
   void m2m_hits(CouplingId id, const collide::Hits& hits);
   void m2m_ask(CouplingId id);
-  void m2m_answer(const DonorQuery& query);
+  void m2m_answer(DonorQuery query);
+  void m2m_answer_all(CouplingId id);
   void m2m_receive_donors(const DonorAnswer& answer);
   void m2m_name_source(CouplingId id);
   void m2m_ask_nearest(CouplingId id, const std::vector<SourcePiece>& sources);

@@ -47,7 +47,6 @@ struct DonorAnswer {
   collide::OwnerId from{};
   std::vector<std::uint32_t> points;  ///< indices into the points of the query
   std::vector<Candidate> candidates;
-  std::uint64_t n_tested = 0;
 };
 
 /// From a target piece to a source piece: which of your vertices are nearest to these points?

@@ -53,6 +53,7 @@ Aabb box_of_nearest(const MeshView& mesh) {
 
 std::vector<Aabb> SourceSide::start_search(const MeshView& mesh) {
   validate(mesh);
+  queries_.clear();
   drafts_.clear();
   donors_.clear();
   rounds_.clear();
@@ -65,13 +66,34 @@ std::vector<Aabb> SourceSide::start_search(const MeshView& mesh) {
   return cover_.boxes;
 }
 
-DonorAnswer SourceSide::answer(const MeshView& mesh, const DonorQuery& query) {
-  BestDonors best = best_donors(mesh, cover_, query.boxes, query.points, setup.tolerance);
-  if (setup.source_values != Centring::nodes)
-    for (std::size_t i = 0; i < best.donors.size(); ++i)
-      best.donors[i] = in_tet(best.tets[i], best.donors[i].weights, setup.source_values);
-  drafts_[query.from] = std::move(best.donors);
-  return {setup.id, {}, std::move(best.points), std::move(best.candidates), best.n_tested};
+bool SourceSide::add(DonorQuery query) {
+  queries_.push_back(std::move(query));
+  return queries_.size() == 1;
+}
+
+std::vector<std::pair<collide::OwnerId, DonorAnswer>> SourceSide::answers(const MeshView& mesh,
+                                                                          std::uint64_t& n_tested) {
+  const std::vector<DonorQuery> queries = std::exchange(queries_, {});
+  std::vector<std::uint32_t> boxes;
+  std::vector<std::span<const Point>> lists;
+  for (const DonorQuery& query : queries) {
+    boxes.insert(boxes.end(), query.boxes.begin(), query.boxes.end());
+    lists.emplace_back(query.points);
+  }
+  sort_unique_boxes(boxes);
+  std::vector<BestDonors> found =
+      best_donors(mesh, cover_, boxes, lists, setup.tolerance, n_tested);
+  std::vector<std::pair<collide::OwnerId, DonorAnswer>> out;
+  for (std::size_t q = 0; q < queries.size(); ++q) {
+    BestDonors& best = found[q];
+    if (setup.source_values != Centring::nodes)
+      for (std::size_t i = 0; i < best.donors.size(); ++i)
+        best.donors[i] = in_tet(best.tets[i], best.donors[i].weights, setup.source_values);
+    drafts_[queries[q].from] = std::move(best.donors);
+    out.emplace_back(queries[q].from,
+                     DonorAnswer{setup.id, {}, std::move(best.points), std::move(best.candidates)});
+  }
+  return out;
 }
 
 NearestAnswer SourceSide::answer(const MeshView& mesh, NearestQuery query) {

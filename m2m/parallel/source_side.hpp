@@ -16,6 +16,7 @@
 #include <map>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace tess::m2m {
@@ -31,7 +32,13 @@ class SourceSide {
   /// Forgets the last search, and returns the boxes of the cover. Where the mesh has stayed as it
   /// was, the cover and what finds nearest vertices are kept.
   [[nodiscard]] std::vector<Aabb> start_search(const MeshView& mesh);
-  [[nodiscard]] DonorAnswer answer(const MeshView& mesh, const DonorQuery& query);
+  /// Keeps a query. Returns true if no other waits for answers().
+  [[nodiscard]] bool add(DonorQuery query);
+  /// The answers to all queries that wait, each with the target piece that asked: their points are
+  /// located in one pass over the tetrahedra near to them. Returns in `n_tested` how many pairs of a
+  /// tetrahedron and a point in its box were looked at.
+  [[nodiscard]] std::vector<std::pair<collide::OwnerId, DonorAnswer>> answers(
+      const MeshView& mesh, std::uint64_t& n_tested);
   [[nodiscard]] NearestAnswer answer(const MeshView& mesh, NearestQuery query);
   void choose(Choice choice);
   [[nodiscard]] bool has_kept_cover() const { return stays_ == SameMesh::Answer::same; }
@@ -65,8 +72,8 @@ class SourceSide {
 
   template <class Ar>
   void serialize(Ar& ar) {
-    ar(setup, same_, stays_, rows_of_search_, cover_, drafts_, donors_, rounds_, gradient_vertices_,
-       gradient_rows_);
+    ar(setup, same_, stays_, rows_of_search_, cover_, queries_, drafts_, donors_, rounds_,
+       gradient_vertices_, gradient_rows_);
   }
 
  private:
@@ -86,6 +93,7 @@ class SourceSide {
   SameMesh::Answer stays_ = SameMesh::Answer::moved;  // in the last search
   RowsOfSearch rows_of_search_;
   Cover cover_;
+  std::vector<DonorQuery> queries_;                        // not answered yet
   std::map<collide::OwnerId, std::vector<Donor>> drafts_;  // per target piece, as answered
   std::map<collide::OwnerId, std::vector<Donor>> donors_;  // per target piece, as chosen
   std::map<std::uint64_t, std::uint32_t> rounds_;          // per channel

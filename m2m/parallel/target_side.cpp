@@ -7,21 +7,6 @@
 #include <cmath>
 
 namespace tess::m2m {
-namespace {
-
-/// Sorts numbers of boxes and removes copies. There are about as many boxes as numbers, so a mark
-/// per box is several times faster than a sort.
-void sort_unique_boxes(std::vector<std::uint32_t>& boxes) {
-  if (boxes.empty()) return;
-  std::vector<std::uint8_t> marks(*std::max_element(boxes.begin(), boxes.end()) + std::size_t{1});
-  for (const std::uint32_t box : boxes) marks[box] = 1;
-  boxes.clear();
-  for (std::size_t box = 0; box < marks.size(); ++box)
-    if (marks[box] != 0) boxes.push_back(static_cast<std::uint32_t>(box));
-}
-
-}  // namespace
-
 std::vector<Aabb> TargetSide::start_search(const MeshView& mesh) {
   // Its tetrahedra are not looked at.
   validate(MeshView{mesh.points, {}, mesh.point_ids, {}, mesh.n_owned});
@@ -78,7 +63,6 @@ void TargetSide::add(const DonorAnswer& answer) {
     if (better(answer.candidates[i], best.candidate)) best = {answer.candidates[i], answer.from};
   }
   asked.rows = {};
-  tally_.n_candidates += answer.n_tested;
   --n_open_;
 }
 

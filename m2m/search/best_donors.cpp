@@ -99,30 +99,37 @@ void snap(const MeshView& mesh, const Cover& cover, std::span<const std::uint32_
 
 }  // namespace
 
-BestDonors best_donors(const MeshView& mesh, const Cover& cover,
-                       std::span<const std::uint32_t> boxes, std::span<const Point> points,
-                       double tolerance) {
-  BestDonors out;
+std::vector<BestDonors> best_donors(const MeshView& mesh, const Cover& cover,
+                                    std::span<const std::uint32_t> boxes,
+                                    std::span<const std::span<const Point>> lists, double tolerance,
+                                    std::uint64_t& n_tested) {
+  std::vector<Point> points;
+  for (const std::span<const Point> list : lists)
+    points.insert(points.end(), list.begin(), list.end());
   DonorSearch search(mesh, points);
   for (const std::uint32_t box : boxes) search.visit(cover.boxes[box], cover.members_of(box));
-  Best best = search.take(out.n_tested);
-  const std::span<const Point> in_grid = search.grid().points();
-  if (tolerance > 0) snap(mesh, cover, boxes, in_grid, tolerance, best);
+  Best best = search.take(n_tested);
+  if (tolerance > 0) snap(mesh, cover, boxes, search.grid().points(), tolerance, best);
 
   std::vector<std::uint32_t> position(points.size());
   for (std::size_t at = 0; at < points.size(); ++at)
     position[search.grid().numbers()[at]] = static_cast<std::uint32_t>(at);
-  out.points.reserve(points.size());
-  out.candidates.reserve(points.size());
-  out.donors.reserve(points.size());
-  out.tets.reserve(points.size());
-  for (std::size_t point = 0; point < points.size(); ++point) {
-    const std::uint32_t at = position[point];
-    if (best.candidates[at].status == Status::outside) continue;
-    out.points.push_back(static_cast<std::uint32_t>(point));
-    out.candidates.push_back(best.candidates[at]);
-    out.donors.push_back(best.donors[at]);
-    out.tets.push_back(best.tets[at]);
+  std::vector<BestDonors> out;
+  std::size_t point = 0;
+  for (const std::span<const Point> list : lists) {
+    BestDonors& of_list = out.emplace_back();
+    of_list.points.reserve(list.size());
+    of_list.candidates.reserve(list.size());
+    of_list.donors.reserve(list.size());
+    of_list.tets.reserve(list.size());
+    for (std::uint32_t i = 0; i < list.size(); ++i) {
+      const std::uint32_t at = position[point++];
+      if (best.candidates[at].status == Status::outside) continue;
+      of_list.points.push_back(i);
+      of_list.candidates.push_back(best.candidates[at]);
+      of_list.donors.push_back(best.donors[at]);
+      of_list.tets.push_back(best.tets[at]);
+    }
   }
   return out;
 }

@@ -11,20 +11,21 @@
 
 namespace tess::m2m {
 
-/// The best candidates among some tetrahedra of a part, for the points that have one.
+/// The best candidates among some tetrahedra of a part, for the points of a list that have one.
 struct BestDonors {
   std::vector<std::uint32_t> points;  ///< ascending
   std::vector<Candidate> candidates;  ///< per point found
   std::vector<Donor> donors;          ///< per point found
   std::vector<std::int32_t> tets;     ///< per point found, in the part
-  std::uint64_t n_tested = 0;         ///< pairs of a tetrahedron and a point in its box
 };
 
-/// Searches the tetrahedra of some boxes of the mesh's cover, each box given once. A point that
-/// none of them holds snaps to the nearest within the tolerance (a length), which the cover
-/// reaches.
-[[nodiscard]] BestDonors best_donors(const MeshView& mesh, const Cover& cover,
-                                     std::span<const std::uint32_t> boxes,
-                                     std::span<const Point> points, double tolerance = 0);
+/// Searches the tetrahedra of some boxes of the mesh's cover, each box given once, in one pass for
+/// several lists of points. A point that none of them holds snaps to the nearest within the
+/// tolerance (a length), which the cover reaches. Returns the candidates per list, and in `n_tested`
+/// the number of pairs of a tetrahedron and a point in its box.
+[[nodiscard]] std::vector<BestDonors> best_donors(const MeshView& mesh, const Cover& cover,
+                                                  std::span<const std::uint32_t> boxes,
+                                                  std::span<const std::span<const Point>> lists,
+                                                  double tolerance, std::uint64_t& n_tested);
 
 }  // namespace tess::m2m

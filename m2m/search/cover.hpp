@@ -31,4 +31,7 @@ struct Cover {
                                double reach = 0);
 [[nodiscard]] Cover cover_points(std::span<const Point> points);
 
+/// Sorts numbers of boxes of a cover and removes copies.
+void sort_unique_boxes(std::vector<std::uint32_t>& boxes);
+
 }  // namespace tess::m2m

@@ -41,6 +41,12 @@ const std::vector<Cloud> clouds{{{1, 1, 1}, 0},
                                 {{1e90, 1, 1e90}, 0},
                                 {{1, 1, 1e-12}, 1e12}};
 
+BestDonors donors_of_list(const MeshView& mesh, const Cover& cover,
+                          std::span<const std::uint32_t> boxes, std::span<const Point> points,
+                          double tolerance, std::uint64_t& n_tested) {
+  return best_donors(mesh, cover, boxes, std::vector{points}, tolerance, n_tested).at(0);
+}
+
 }  // namespace
 
 TEST_CASE("a cover lists each object once, in a box that contains it", "[m2m]") {
@@ -162,7 +168,8 @@ TEST_CASE("the narrow phase finds the best tetrahedron of each point among all",
   for (const std::size_t n : {std::size_t{30}, std::size_t{3000}}) {
     std::vector<Point> points = random_points(n, {1.2, 1.2, 1.2}, -0.1);
     points.insert(points.end(), mesh.points.begin(), mesh.points.begin() + 100);
-    const BestDonors best = best_donors(view, cover, all, points);
+    std::uint64_t n_tested = 0;
+    const BestDonors best = donors_of_list(view, cover, all, points, 0, n_tested);
     std::map<std::uint32_t, std::size_t> at;
     for (std::size_t i = 0; i < best.points.size(); ++i) at[best.points[i]] = i;
     std::size_t n_inside = 0;
@@ -198,20 +205,21 @@ TEST_CASE("a point snaps to the same tetrahedron whether one piece has all or ea
   const std::vector<Tet> tets{{0, 1, 2, 3}, {4, 5, 6, 7}};
   const std::vector<GlobalId> ids{1, 0};
   const std::vector<Point> points{{0.3002, 0.3002, 8e-12}, {0.30025, 0.3002, 7e-12}};
+  std::uint64_t n_tested = 0;
   const auto snapped = [&](std::size_t first, std::size_t n) {
     const MeshView view{
         corners, std::span(tets).subspan(first, n), {}, std::span(ids).subspan(first, n), 0};
     const Cover cover = cover_tets(view.points, view.tets, 1e-9);
     std::vector<std::uint32_t> all(cover.boxes.size());
     std::iota(all.begin(), all.end(), 0U);
-    return best_donors(view, cover, all, points, 1e-9);
+    return donors_of_list(view, cover, all, points, 1e-9, n_tested);
   };
   const BestDonors whole = snapped(0, 2), alone = snapped(1, 1);
   REQUIRE(whole.points.size() == points.size());
   REQUIRE(alone.points.size() == points.size());
-  REQUIRE(best_donors({corners, std::span(tets).first(1), {}, std::span(ids).first(1), 0},
-                      cover_tets(corners, std::span(tets).first(1)), std::vector<std::uint32_t>{0},
-                      points)
+  REQUIRE(donors_of_list({corners, std::span(tets).first(1), {}, std::span(ids).first(1), 0},
+                         cover_tets(corners, std::span(tets).first(1)),
+                         std::vector<std::uint32_t>{0}, points, 0, n_tested)
               .points.size() == points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     CHECK(whole.candidates[i].tet == 0);
@@ -225,8 +233,42 @@ TEST_CASE("the narrow phase looks only at the boxes of the cover that it is give
   const MeshView view{mesh.points, mesh.tets, {}, ids, 0};
   const Cover cover = cover_tets(mesh.points, mesh.tets);
   const std::vector<std::uint32_t> first{0};
-  const BestDonors best = best_donors(view, cover, first, mesh.points);
+  std::uint64_t n_tested = 0;
+  const BestDonors best = donors_of_list(view, cover, first, mesh.points, 0, n_tested);
   CHECK(!best.points.empty());
   CHECK(best.points.size() < mesh.n_points());
-  CHECK(best.n_tested < 100 * cover.members_of(0).size());
+  CHECK(n_tested < 100 * cover.members_of(0).size());
+}
+
+TEST_CASE("the points of several lists have the donors that those of each list have", "[m2m]") {
+  const TetMesh mesh = read_mesh("kuhn:7");
+  std::vector<GlobalId> ids(mesh.n_tets());
+  std::iota(ids.begin(), ids.end(), 0);
+  const MeshView view{mesh.points, mesh.tets, {}, ids, 0};
+  constexpr double tolerance = 0.05;
+  const Cover cover = cover_tets(mesh.points, mesh.tets, tolerance);
+  std::vector<std::uint32_t> all(cover.boxes.size());
+  std::iota(all.begin(), all.end(), 0U);
+  const std::vector<Point> some = random_points(40, {0.5, 0.5, 0.5}, -0.04);
+  const std::vector<Point> others = random_points(900, {1.1, 1.1, 1.1}, -0.05);
+  const std::vector<std::span<const Point>> lists{some, {}, others, some, mesh.points};
+  std::uint64_t n_tested = 0, n_tested_apart = 0;
+  const std::vector<BestDonors> found = best_donors(view, cover, all, lists, tolerance, n_tested);
+  REQUIRE(found.size() == lists.size());
+  for (std::size_t l = 0; l < lists.size(); ++l) {
+    std::uint64_t n = 0;
+    const BestDonors apart = donors_of_list(view, cover, all, lists[l], tolerance, n);
+    n_tested_apart += n;
+    CHECK(found[l].points == apart.points);
+    CHECK(found[l].tets == apart.tets);
+    REQUIRE(found[l].donors.size() == apart.donors.size());
+    for (std::size_t i = 0; i < apart.donors.size(); ++i) {
+      CHECK(found[l].donors[i].weights == apart.donors[i].weights);
+      CHECK(found[l].candidates[i].distance == apart.candidates[i].distance);
+    }
+  }
+  CHECK(!found[0].points.empty());
+  CHECK(found[1].points.empty());
+  CHECK(found[2].points.size() < others.size());
+  CHECK(n_tested == n_tested_apart);
 }
