@@ -183,13 +183,15 @@ Choice<D> GridChooser<Real, D>::choose_again(const Problem<Real, D>& problem,
                                            static_cast<double>(widest) / edge));
       if (product > most_cells) return best;
       const double per_edge = 1 / edge;
-      double copies_a = 0, copies_b = 0;
-      for (const Sample& sample : samples_) {
-        double copies = 1;
-        if (!as_points)
+      double copies_a = samples_a_, copies_b = samples_b_;
+      if (!as_points) {
+        copies_a = copies_b = 0;
+        for (const Sample& sample : samples_) {
+          double copies = 1;
           for (const float extent : sample.extent)
             copies *= 1 + static_cast<double>(extent) * per_edge;
-        ((sample.code & 1U) != 0 ? copies_b : copies_a) += copies;
+          ((sample.code & 1U) != 0 ? copies_b : copies_a) += copies;
+        }
       }
       const double in_a = n_a * copies_a / std::max(samples_a_, 1.0);
       const double in_b = n_b * copies_b / std::max(samples_b_, 1.0);
