@@ -1,19 +1,13 @@
 // An array that grows and is not filled with zeros: memory that a search writes before it reads.
-// Large ones ask for large pages, of which a search of a million objects touches some tens instead
-// of ten thousand.
 #pragma once
 
 #include "runtime/core/algorithm.hpp"
 
 #include <cstddef>
-#include <cstdlib>
 #include <cstring>
 #include <memory>
 #include <new>
 #include <type_traits>
-#ifdef __linux__
-#include <sys/mman.h>
-#endif
 
 namespace tess::collide::search {
 
@@ -48,18 +42,14 @@ class Scratch {
   [[nodiscard]] std::size_t bytes() const noexcept { return capacity_ * sizeof(T); }
 
  private:
+  static constexpr std::align_val_t line{64};
   struct Free {
-    void operator()(T* data) const noexcept { std::free(data); }
+    void operator()(T* data) const noexcept { ::operator delete(data, line); }
   };
   void grow(std::size_t n) {
-    constexpr std::size_t large_page = std::size_t{1} << 21, line = 64;
-    const std::size_t aligned_to = n * sizeof(T) >= large_page ? large_page : line;
-    const std::size_t bytes = (n * sizeof(T) + aligned_to - 1) / aligned_to * aligned_to;
-    std::unique_ptr<T[], Free> larger(static_cast<T*>(std::aligned_alloc(aligned_to, bytes)));
-    if (larger == nullptr) throw std::bad_alloc();
-#ifdef __linux__
-    if (aligned_to == large_page) madvise(larger.get(), bytes, MADV_HUGEPAGE);
-#endif
+    constexpr auto per_line = static_cast<std::size_t>(line);
+    const std::size_t bytes = (n * sizeof(T) + per_line - 1) / per_line * per_line;
+    std::unique_ptr<T[], Free> larger(static_cast<T*>(::operator new(bytes, line)));
     if (capacity_ != 0) std::memcpy(larger.get(), data_.get(), capacity_ * sizeof(T));
     data_ = std::move(larger);
     capacity_ = bytes / sizeof(T);

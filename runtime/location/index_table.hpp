@@ -13,7 +13,6 @@
 // in a hash table with linear probing, usually within one cache line.
 #pragma once
 
-#include "runtime/base/huge_pages.hpp"
 #include "runtime/core/ids.hpp"
 #include "runtime/core/index.hpp"
 #include "runtime/location/version.hpp"
@@ -174,7 +173,7 @@ class IndexTable {
     bool used = false;
     Record record;
   };
-  using Entries = std::vector<Entry, HugePageAllocator<Entry>>;
+  using Entries = std::vector<Entry>;
   static constexpr std::size_t page_size = 256;
   using Page = std::array<Record, page_size>;
 
