@@ -5,8 +5,10 @@
 
 #include <array>
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <system_error>
 #include <type_traits>
@@ -32,8 +34,10 @@ int in_own_process(const char* program, const std::function<int(Row&)>& run, Row
   const pid_t child = ::fork();
   if (child < 0) refuse("fork");
   if (child == 0) {
+    ::close(ends[0]);
+    (void)::prctl(PR_SET_PDEATHSIG, SIGKILL);  // it ends with the parent
     const int code = tess::guarded(program, [&] { return run(row); });
-    const bool is_written = ::write(ends[1], &row, sizeof row) == ssize_t{sizeof row};
+    const bool is_written = code == 0 && ::write(ends[1], &row, sizeof row) == ssize_t{sizeof row};
     std::fflush(nullptr);
     std::_Exit(code != 0 || is_written ? code : 1);
   }
@@ -44,9 +48,12 @@ int in_own_process(const char* program, const std::function<int(Row&)>& run, Row
   while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
   if (WIFEXITED(status) && WEXITSTATUS(status) != 0) return WEXITSTATUS(status);
-  if (status != 0 || !is_read)
+  if (WIFSIGNALED(status))
     tess::fail(tess::ErrorCode::environment, "the process that measured was ended by signal ",
                WTERMSIG(status), "; if it was 9, the memory may not have sufficed");
+  if (!is_read)
+    tess::fail(tess::ErrorCode::environment,
+               "the process that measured ended without a result; see what it printed");
   return 0;
 }
 

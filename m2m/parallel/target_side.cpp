@@ -7,6 +7,7 @@
 #include <cmath>
 
 namespace tess::m2m {
+
 std::vector<Aabb> TargetSide::start_search(const MeshView& mesh) {
   // Its tetrahedra are not looked at.
   validate(MeshView{mesh.points, {}, mesh.point_ids, {}, mesh.n_owned});

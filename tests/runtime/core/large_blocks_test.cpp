@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <fstream>
+#include <malloc.h>
 #include <memory>
 #include <new>
 #include <sstream>
@@ -37,6 +38,8 @@ bool asks_for_large_pages(const void* address) {
 
 TEST_CASE("large blocks ask for large pages, and small ones do not", "[core]") {
   if (!has_large_pages()) return;
+  // Blocks of 128 KiB and more are mappings of their own, whatever was freed before.
+  REQUIRE(mallopt(M_MMAP_THRESHOLD, 128 << 10) == 1);
   const std::vector<std::byte> large(64 * mib + 5), small(mib);
   CHECK(asks_for_large_pages(large.data() + 2 * mib));
   CHECK(asks_for_large_pages(large.data() + 61 * mib));
