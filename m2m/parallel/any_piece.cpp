@@ -45,7 +45,7 @@ void AnyPiece::m2m_answer(DonorQuery query) {
   SourceSide& from = m2m_sides().source(id);
   // Behind the queries that are in the queue of this PE.
   if (from.add(std::move(query)))
-    from.setup.source.template send<&AnyPiece::m2m_answer_all>(m2m_owner(), id);
+    from.setup.source.send<&AnyPiece::m2m_answer_all>(m2m_owner(), id);
 }
 void AnyPiece::m2m_answer_all(CouplingId id) {
   SourceSide& from = m2m_sides().source(id);

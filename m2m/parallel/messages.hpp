@@ -12,6 +12,7 @@
 #include "runtime/runtime.hpp"
 
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace tess::m2m {
@@ -33,6 +34,10 @@ struct CouplingSetup {
   Centring source_values{}, target_values{};
   GroupProxy<PointDirectory> directory;  ///< only where target pieces exchange values of ghosts
 };
+
+/// Messages, each with the piece that it goes to.
+template <class Message>
+using Addressed = std::vector<std::pair<collide::OwnerId, Message>>;
 
 /// From a target piece to a source piece: which of your tetrahedra hold these points?
 struct DonorQuery {

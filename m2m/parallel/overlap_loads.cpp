@@ -13,11 +13,11 @@ void OverlapLoads::add_source(collide::OwnerId piece, std::vector<std::uint32_t>
   if (!places.empty()) sources_[piece].places = std::move(places);
 }
 
-std::vector<std::pair<collide::OwnerId, std::vector<std::uint8_t>>> OverlapLoads::shared() {
+Addressed<std::vector<std::uint8_t>> OverlapLoads::shared() {
   std::unordered_map<std::uint32_t, std::uint32_t> n_sources;
   for (const auto& [piece, source] : sources_)
     for (const std::uint32_t place : source.places) ++n_sources[place];
-  std::vector<std::pair<collide::OwnerId, std::vector<std::uint8_t>>> out;
+  Addressed<std::vector<std::uint8_t>> out;
   for (auto& [piece, source] : sources_) {
     std::vector<std::uint8_t> flags;
     for (const std::uint32_t place : std::exchange(source.places, {})) {

@@ -18,7 +18,7 @@ class OverlapLoads {
   /// The places for which a source piece has a row, in its order.
   void add_source(collide::OwnerId piece, std::vector<std::uint32_t> places);
   /// After all of these: per source piece and row, 1 if others have a part of the row, too.
-  [[nodiscard]] std::vector<std::pair<collide::OwnerId, std::vector<std::uint8_t>>> shared();
+  [[nodiscard]] Addressed<std::vector<std::uint8_t>> shared();
   void add(PartialRows partial) { partial_.push_back(std::move(partial)); }
   /// After all of these.
   void join();

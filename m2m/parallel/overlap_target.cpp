@@ -95,7 +95,7 @@ std::array<std::uint32_t, 4> OverlapTarget::places_of(const MeshView& mesh,
   return places;
 }
 
-OverlapTarget::Addressed<OverlapQuery> OverlapTarget::queries(const MeshView& mesh) {
+Addressed<OverlapQuery> OverlapTarget::queries(const MeshView& mesh) {
   const std::size_t n_places =
       to_cells() ? numbers_.size() : static_cast<std::size_t>(mesh.n_owned);
   Addressed<OverlapQuery> out;
@@ -154,7 +154,7 @@ void OverlapTarget::add(const OverlapAnswer& answer) {
   asked_.erase(answer.from);
 }
 
-OverlapTarget::Addressed<SharedRows> OverlapTarget::shared_rows() {
+Addressed<SharedRows> OverlapTarget::shared_rows() {
   Addressed<SharedRows> out;
   for (auto& [piece, flags] : loads_.shared())
     out.emplace_back(piece, SharedRows{setup.id, {}, std::move(flags)});

@@ -16,9 +16,6 @@ namespace tess::m2m {
 
 class OverlapTarget {
  public:
-  template <class Message>
-  using Addressed = std::vector<std::pair<collide::OwnerId, Message>>;
-
   CouplingSetup setup;
 
   /// Forgets the last search, and returns boxes around the tetrahedra that get loads.

@@ -71,8 +71,7 @@ bool SourceSide::add(DonorQuery query) {
   return queries_.size() == 1;
 }
 
-std::vector<std::pair<collide::OwnerId, DonorAnswer>> SourceSide::answers(const MeshView& mesh,
-                                                                          std::uint64_t& n_tested) {
+Addressed<DonorAnswer> SourceSide::answers(const MeshView& mesh, std::uint64_t& n_tested) {
   const std::vector<DonorQuery> queries = std::exchange(queries_, {});
   std::vector<std::uint32_t> boxes;
   std::vector<std::span<const Point>> lists;
@@ -83,7 +82,7 @@ std::vector<std::pair<collide::OwnerId, DonorAnswer>> SourceSide::answers(const 
   sort_unique_boxes(boxes);
   std::vector<BestDonors> found =
       best_donors(mesh, cover_, boxes, lists, setup.tolerance, n_tested);
-  std::vector<std::pair<collide::OwnerId, DonorAnswer>> out;
+  Addressed<DonorAnswer> out;
   for (std::size_t q = 0; q < queries.size(); ++q) {
     BestDonors& best = found[q];
     if (setup.source_values != Centring::nodes)

@@ -34,11 +34,10 @@ class SourceSide {
   [[nodiscard]] std::vector<Aabb> start_search(const MeshView& mesh);
   /// Keeps a query. Returns true if no other waits for answers().
   [[nodiscard]] bool add(DonorQuery query);
-  /// The answers to all queries that wait, each with the target piece that asked: their points are
-  /// located in one pass over the tetrahedra near to them. Returns in `n_tested` how many pairs of a
-  /// tetrahedron and a point in its box were looked at.
-  [[nodiscard]] std::vector<std::pair<collide::OwnerId, DonorAnswer>> answers(
-      const MeshView& mesh, std::uint64_t& n_tested);
+  /// The answers to all queries that wait: their points are located in one pass over the
+  /// tetrahedra near to them. Returns in `n_tested` how many pairs of a tetrahedron and a point in
+  /// its box were looked at.
+  [[nodiscard]] Addressed<DonorAnswer> answers(const MeshView& mesh, std::uint64_t& n_tested);
   [[nodiscard]] NearestAnswer answer(const MeshView& mesh, NearestQuery query);
   void choose(Choice choice);
   [[nodiscard]] bool has_kept_cover() const { return stays_ == SameMesh::Answer::same; }

@@ -35,7 +35,7 @@ void TargetSide::add(const collide::Hits& hits) {
   }
 }
 
-TargetSide::Addressed<DonorQuery> TargetSide::donor_queries(const MeshView& mesh) {
+Addressed<DonorQuery> TargetSide::donor_queries(const MeshView& mesh) {
   Addressed<DonorQuery> out;
   for (auto& [source, asked] : asked_) {
     sort_unique_boxes(asked.boxes);
@@ -95,7 +95,7 @@ void TargetSide::name_sources(const MeshView& mesh, std::span<const SourcePiece>
   nearest_parts_ = NearestParts(boxes, around);
 }
 
-TargetSide::Addressed<NearestQuery> TargetSide::nearest_queries(const MeshView& mesh) {
+Addressed<NearestQuery> TargetSide::nearest_queries(const MeshView& mesh) {
   std::map<collide::OwnerId, NearestQuery> queries;
   std::erase_if(to_ask_, [&](std::uint32_t key) {
     NearestSoFar& so_far = nearest_[key];
@@ -129,7 +129,7 @@ void TargetSide::add(const NearestAnswer& answer) {
   --n_open_;
 }
 
-TargetSide::Addressed<Choice> TargetSide::choices(const MeshView& mesh) {
+Addressed<Choice> TargetSide::choices(const MeshView& mesh) {
   std::map<collide::OwnerId, Choice> all;
   for (auto& [source, asked] : asked_) {
     Choice& choice = all[source];

@@ -19,9 +19,6 @@ namespace tess::m2m {
 
 class TargetSide {
  public:
-  template <class Message>
-  using Addressed = std::vector<std::pair<collide::OwnerId, Message>>;
-
   CouplingSetup setup;
 
   /// Forgets the last search, and returns boxes around the points.
