@@ -1,4 +1,4 @@
-// What a program draws on the page of --monitor.
+// What a program draws on the page of --monitor. A program that links Tessera::live_view has it.
 //
 //     tess::show("temperature", [this] {
 //       return tess::Picture{64, 64, x_, y_, tile_.width(), tile_.values()};
@@ -11,7 +11,7 @@
 
 #include "runtime/core/algorithm.hpp"
 #include "runtime/core/check.hpp"
-#include "runtime/monitor/monitor.hpp"
+#include "runtime/scheduler/interfaces/process_monitor.hpp"
 #include "runtime/scheduler/runtime.hpp"
 
 #include <cmath>
@@ -40,7 +40,7 @@ template <std::invocable F>
   requires std::same_as<std::invoke_result_t<F>, Picture>
 void show(std::string_view name, std::uint64_t part, F&& picture) {
   Pe& pe = current_pe();
-  auto* const monitor = static_cast<detail::Monitor*>(pe.runtime().monitor());
+  detail::ProcessMonitor* const monitor = pe.runtime().monitor();
   if (monitor == nullptr || pe.stopped() || !monitor->wants_part(pe, name, part)) return;
   Picture of = std::forward<F>(picture)();
   if (of.values.empty()) return;
@@ -58,7 +58,7 @@ void show(std::string_view name, std::uint64_t part, F&& picture) {
   for (const double value : of.values)
     out.values.push_back(
         static_cast<float>(std::isfinite(value) ? std::clamp(value, -most, most) : value));
-  detail::send_part(pe, std::move(out));
+  monitor->draw(pe, std::move(out));
 }
 /// Shows the running element's part of a picture.
 template <std::invocable F>

@@ -6,7 +6,7 @@
 #include "runtime/machine/mpi.hpp"
 #include "runtime/machine/simulated.hpp"
 #include "runtime/machine/threads.hpp"
-#include "runtime/monitor/monitor.hpp"
+#include "runtime/scheduler/interfaces/process_monitor.hpp"
 #include "runtime/scheduler/pe.hpp"
 #include "runtime/scheduler/runtime.hpp"
 #include "runtime/service/service.hpp"
@@ -51,6 +51,9 @@ std::size_t memory_size(std::string_view option, std::string_view value) {
 
 /// "8080", "0.0.0.0:8080", "[::1]:8080".
 MonitorOptions monitor_options(std::string_view value, std::string_view token) {
+  if (detail::make_monitor == nullptr)
+    fail(ErrorCode::bad_argument, "--monitor ", value,
+         ": this program has no live view; link it with Tessera::live_view");
   MonitorOptions options;
   options.token = token;
   std::string_view port = value;
@@ -200,32 +203,36 @@ MachineChoice take_values(int& argc, char** argv, RuntimeOptions& options) {
 }  // namespace
 
 std::string options_help() {
-  return "Runtime:\n"
-         "  --pes N     PEs per process (default: one per core)\n"
-         "  --sim KEYS  run on a simulated machine: "
-         "pes=8,per-process=2,latency=2us,bandwidth=10GB/s,cost=100ns,\n"
-         "              seed=7 (adversarial delivery order), migrate=0.1 (forced migrations),\n"
-         "              file=FILE (the machine that bench --calibrate FILE measured)\n"
-         "  --message-memory SIZE\n"
-         "              most bytes of messages under way from one process to another (default "
-         "32MiB);\n"
-         "              later messages wait at their sender\n"
-         "  --hang-report SECONDS\n"
-         "              report what waits when no entry method has begun for so long, and which "
-         "entry methods\n"
-         "              take so long; SIGUSR1 asks for the report at any time\n"
-         "  --audit     count the messages between PEs at both ends, and name those that were lost "
-         "or arrived\n"
-         "              twice\n"
-         "  --stats     print the counters of each PE: messages, bytes, busy and idle seconds, "
-         "chares\n"
-         "  --monitor [ADDRESS:]PORT\n"
-         "              serve a page that shows the run while it goes on (port 0: any free one)\n"
-         "  --monitor-token T\n"
-         "              what a browser must bring (?token=T); needed for an address that others "
-         "can reach\n"
-         "  --trace F   write what each PE ran, and which send caused it, as JSON for Perfetto or\n"
-         "              chrome://tracing (process p of several writes F.p)\n";
+  std::string text =
+      "Runtime:\n"
+      "  --pes N     PEs per process (default: one per core)\n"
+      "  --sim KEYS  run on a simulated machine: "
+      "pes=8,per-process=2,latency=2us,bandwidth=10GB/s,cost=100ns,\n"
+      "              seed=7 (adversarial delivery order), migrate=0.1 (forced migrations),\n"
+      "              file=FILE (the machine that bench --calibrate FILE measured)\n"
+      "  --message-memory SIZE\n"
+      "              most bytes of messages under way from one process to another (default "
+      "32MiB);\n"
+      "              later messages wait at their sender\n"
+      "  --hang-report SECONDS\n"
+      "              report what waits when no entry method has begun for so long, and which "
+      "entry methods\n"
+      "              take so long; SIGUSR1 asks for the report at any time\n"
+      "  --audit     count the messages between PEs at both ends, and name those that were lost "
+      "or arrived\n"
+      "              twice\n"
+      "  --stats     print the counters of each PE: messages, bytes, busy and idle seconds, "
+      "chares\n"
+      "  --trace F   write what each PE ran, and which send caused it, as JSON for Perfetto or\n"
+      "              chrome://tracing (process p of several writes F.p)\n";
+  if (detail::make_monitor != nullptr)
+    text +=
+        "  --monitor [ADDRESS:]PORT\n"
+        "              serve a page that shows the run while it goes on (port 0: any free one)\n"
+        "  --monitor-token T\n"
+        "              what a browser must bring (?token=T); needed for an address that others "
+        "can reach\n";
+  return text;
 }
 
 Setup take_options(int& argc, char** argv) {
@@ -264,8 +271,8 @@ int run_on(Setup& setup, std::function<void()> main) {
                           std::move(main));
   detail::Service service(runtime, setup.options.signals);
   runtime.serve(service);
-  std::optional<detail::Monitor> monitor;
-  if (setup.options.monitor) monitor.emplace(runtime, *setup.options.monitor);
+  std::unique_ptr<detail::ProcessMonitor> monitor;
+  if (setup.options.monitor) monitor = detail::make_monitor(runtime, *setup.options.monitor);
   runtime.prepare();
   setup.started = true;  // before it, a process that throws tells the others: refuse()
   return runtime.run();

@@ -363,9 +363,21 @@ bool Monitor::wants_part(const Pe& pe, std::string_view name, std::uint64_t part
   return loop_->wants_part(pe, name, part);
 }
 
-void send_part(Pe& pe, PicturePart part) {
-  if (is_on_process_0(pe)) return loop_of(pe).draw(part);
+void Monitor::draw(Pe& pe, PicturePart part) {
+  if (is_on_process_0(pe)) return loop_->draw(part);
   send_uncounted<&part_arrives>(pe, PeId{0}, std::move(part));
+}
+
+namespace {
+std::unique_ptr<ProcessMonitor> serve_page(Runtime& runtime, const MonitorOptions& options) {
+  return std::make_unique<Monitor>(runtime, options);
+}
+}  // namespace
+
+// Before main(): the program that links this library offers --monitor.
+extern "C" {
+extern const bool tess_live_view_is_linked;  // the linker is asked for it (CMakeLists.txt)
+const bool tess_live_view_is_linked = (make_monitor = &serve_page, true);
 }
 
 }  // namespace tess::detail

@@ -26,20 +26,6 @@ namespace tess::detail {
 
 class Runtime;
 
-/// One picture, or a part of one, that the program draws: rows of values from the top left.
-struct PicturePart {
-  std::string name;
-  std::int32_t width = 0, height = 0;  ///< of the whole picture
-  std::int32_t x = 0, y = 0;           ///< where the part begins
-  std::int32_t columns = 0;            ///< of the part
-  std::vector<float> values;           ///< of the part, row by row
-
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(name, width, height, x, y, columns, values);
-  }
-};
-
 class Monitor final : public ProcessMonitor {
  public:
   /// On process 0 it serves from now on. Throws Error if the port cannot be had.
@@ -51,8 +37,8 @@ class Monitor final : public ProcessMonitor {
   void balanced(Pe& pe, BalanceNote note) override;
   void close() override;
 
-  /// True if this part of a picture is wanted: once between two samples of the PE.
-  [[nodiscard]] bool wants_part(const Pe& pe, std::string_view name, std::uint64_t part);
+  [[nodiscard]] bool wants_part(const Pe& pe, std::string_view name, std::uint64_t part) override;
+  void draw(Pe& pe, PicturePart part) override;
 
   /// The thread and its state. Handlers of its messages on the PEs call it.
   class Loop;
@@ -61,8 +47,5 @@ class Monitor final : public ProcessMonitor {
  private:
   std::unique_ptr<Loop> loop_;
 };
-
-/// Sends a part of a picture to the monitor.
-void send_part(Pe& pe, PicturePart part);
 
 }  // namespace tess::detail

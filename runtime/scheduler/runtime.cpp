@@ -13,6 +13,9 @@
 #include <fmt/core.h>
 
 namespace tess::detail {
+
+std::unique_ptr<ProcessMonitor> (*make_monitor)(Runtime&, const MonitorOptions&) = nullptr;
+
 namespace {
 
 struct Code {

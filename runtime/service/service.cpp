@@ -5,26 +5,20 @@
 #include "runtime/service/hang_watch.hpp"
 #include "runtime/service/job_report.hpp"
 #include "runtime/service/process_census.hpp"
-
-#include <boost/asio/executor_work_guard.hpp>
-#include <boost/asio/io_context.hpp>
-#include <boost/asio/post.hpp>
-#include <boost/asio/signal_set.hpp>
-#include <boost/asio/steady_timer.hpp>
+#include "runtime/service/timekeeper.hpp"
 
 #include <array>
 #include <csignal>
 #include <map>
 #include <mutex>
 #include <optional>
-#include <thread>
 #include <utility>
 
 namespace tess::detail {
 namespace {
 
 using namespace std::chrono_literals;
-using Clock = std::chrono::steady_clock;
+using Clock = Timekeeper::Clock;
 
 /// The time in which a PE answers, and after which the job is aborted, both since the signal.
 constexpr auto answer_time = 300ms;
@@ -33,17 +27,6 @@ constexpr auto abort_time = 700ms;
 constexpr auto job_time = 1s;
 
 constexpr std::array taken_signals{SIGINT, SIGTERM, SIGUSR1};
-
-/// Has Asio take a signal that has the system's default action, which Asio gives back. System calls
-/// that it interrupts are restarted.
-void take_signal(boost::asio::signal_set& set, int signal) {
-  struct sigaction action {};
-  if (sigaction(signal, nullptr, &action) != 0 || action.sa_handler != SIG_DFL) return;
-  set.add(signal);
-  sigaction(signal, nullptr, &action);
-  action.sa_flags |= SA_RESTART;
-  sigaction(signal, &action, nullptr);
-}
 
 const char* name_of_signal(int signal) {
   return signal == SIGINT ? "SIGINT" : signal == SIGTERM ? "SIGTERM" : "SIGUSR1";
@@ -87,21 +70,18 @@ class Service::Loop {
  public:
   Loop(Runtime& runtime, bool signals) : runtime_(runtime), machine_(runtime.machine()) {
     const Time limit = runtime.options().hang_report;
+    const std::lock_guard lock(mutex_);
     if (limit.count() != 0 && !machine_.virtual_time()) {
       watch_.emplace(runtime, limit);
       look_later();
     }
-    if (signals) {
-      for (const int signal : taken_signals) take_signal(signals_, signal);
-      wait_for_signal();
-    }
-    if (signals || watch_) start();
+    if (signals) thread_.take_signals(taken_signals, [this](int signal) { on_signal(signal); });
   }
   Loop(const Loop&) = delete;
   Loop& operator=(const Loop&) = delete;
   ~Loop() {
-    io_.stop();
-    if (thread_.joinable()) thread_.join();
+    const std::lock_guard lock(mutex_);
+    closed_ = true;
     for (const auto& [due, one] : later_) discard(one.second);
   }
 
@@ -109,12 +89,7 @@ class Service::Loop {
     const auto due = Clock::now() + delay;
     const std::lock_guard lock(mutex_);
     const auto at = later_.emplace(due, std::pair(to, message));
-    if (at != later_.begin()) return;
-    start();
-    boost::asio::post(io_, [this] {
-      const std::lock_guard here(mutex_);
-      arm();
-    });
+    if (at == later_.begin()) arm();
   }
 
   /// A PE answers; `round` 0: to whatever census ends the run.
@@ -123,7 +98,7 @@ class Service::Loop {
     if (!census_ || (round != 0 && round != census_->round())) return;
     if (!census_->take(pe, std::move(waits), counted)) return;
     if (ending_) return report();
-    boost::asio::post(io_, [this, of = census_->round()] { close_census(of); });
+    thread_.soon([this, of = census_->round()] { close_census(of); });
   }
 
   void ends_by_signal(int signal, PeId pe, Waits waits) {
@@ -132,11 +107,7 @@ class Service::Loop {
       if (!ending_) {  // another process received the signal
         ending_ = true;
         new_census(signal);
-        if (thread_.joinable())
-          boost::asio::post(io_, [this] {
-            const std::lock_guard here(mutex_);
-            limit_census();
-          });
+        if (thread_.started()) limit_census();
       }
     }
     take(0, pe, std::move(waits), {});
@@ -145,11 +116,9 @@ class Service::Loop {
   void report_job(std::function<void(std::string&&)> done) {
     const std::lock_guard lock(mutex_);
     if (closed_ || ending_) return;
-    start();
-    boost::asio::post(io_, [this, done = std::move(done)]() mutable {
-      const std::lock_guard here(mutex_);
+    thread_.soon([this, done = std::move(done)] {
       if (closed_ || ending_) return;
-      askers_.push_back(std::move(done));
+      askers_.push_back(done);
       begin_job(browser);
     });
   }
@@ -171,8 +140,7 @@ class Service::Loop {
     const std::lock_guard lock(mutex_);
     if (closed_ || ending_ || ask.round <= last_asked_) return;
     last_asked_ = ask.round;
-    start();
-    boost::asio::post(io_, [this, ask] { answer(ask); });
+    thread_.soon([this, ask] { answer(ask); });
   }
   /// This process's report, for the first PE that fetches it.
   [[nodiscard]] std::optional<ProcessReport> fetch() {
@@ -188,9 +156,8 @@ class Service::Loop {
   /// Process 0 receives the report of another process.
   void take_report(ProcessReport&& report) {
     const std::lock_guard lock(mutex_);
-    if (closed_ || !thread_.joinable()) return;
-    boost::asio::post(io_, [this, report = std::move(report)]() mutable {
-      const std::lock_guard here(mutex_);
+    if (closed_ || !thread_.started()) return;
+    thread_.soon([this, report = std::move(report)]() mutable {
       if (closed_ || ending_) return;
       if (report.job_round == 0 && (job_ || Clock::now() - job_printed_ > job_time))
         begin_job(SIGUSR1);  // another process got the signal
@@ -202,9 +169,6 @@ class Service::Loop {
  private:
   // Called under the lock.
 
-  void start() {
-    if (!thread_.joinable()) thread_ = std::thread([this] { io_.run(); });
-  }
   [[nodiscard]] PeId first_pe() const { return machine_.first_pe(machine_.process()); }
   /// The processes of the job in different memories.
   [[nodiscard]] std::int32_t n_processes() const {
@@ -219,23 +183,15 @@ class Service::Loop {
       machine_.hand_in(to, make_outside<Handler>(to, payload));
     }
   }
-  /// Calls `run` under the lock after a time.
-  template <class Run>
-  void after(boost::asio::steady_timer& timer, Time delay, Run run) {
-    timer.expires_after(delay);
-    timer.async_wait([this, run](const boost::system::error_code& error) {
-      const std::lock_guard here(mutex_);
-      if (!error && !closed_) run();
+  void after(Timekeeper::Timer& timer, Time delay, std::function<void()> run) {
+    thread_.set(timer, Clock::now() + delay, [this, run = std::move(run)] {
+      if (!closed_) run();
     });
   }
 
-  /// Waits for the timer that is due first.
+  /// Waits for the message that is due first.
   void arm() {
-    if (later_.empty()) return;
-    timer_.expires_at(later_.begin()->first);
-    timer_.async_wait([this](const boost::system::error_code& error) {
-      if (!error) post_due();
-    });
+    if (!later_.empty()) thread_.set(timer_, later_.begin()->first, [this] { post_due(); });
   }
 
   void new_census(int signal, std::uint64_t job_round = 0) {
@@ -301,11 +257,9 @@ class Service::Loop {
   // On the thread of the service.
 
   void close_census(std::uint64_t round) {
-    const std::lock_guard lock(mutex_);
     if (!closed_ && !ending_ && census_->round() == round) report();
   }
   void answer(const JobAsk& ask) {
-    const std::lock_guard lock(mutex_);
     if (closed_ || ending_) return;
     if (ask.signal == hang && watch_ && watch_->idle(Clock::now()) < watch_->limit() * 3 / 4) {
       ProcessReport busy;
@@ -328,16 +282,8 @@ class Service::Loop {
       look_later();
     });
   }
-  void wait_for_signal() {
-    signals_.async_wait([this](const boost::system::error_code& error, int signal) {
-      if (error) return;
-      on_signal(signal);
-      wait_for_signal();
-    });
-  }
   void on_signal(int signal);
   void post_due() {
-    const std::lock_guard lock(mutex_);
     if (closed_) return;
     const auto now = Clock::now();
     while (!later_.empty() && later_.begin()->first <= now) {
@@ -350,12 +296,6 @@ class Service::Loop {
 
   Runtime& runtime_;
   Machine& machine_;
-  boost::asio::io_context io_{1};
-  boost::asio::executor_work_guard<boost::asio::io_context::executor_type> keeps_running_{
-      io_.get_executor()};
-  boost::asio::signal_set signals_{io_};
-  boost::asio::steady_timer timer_{io_}, answers_due_{io_}, abort_due_{io_}, job_due_{io_},
-      confirmed_due_{io_}, look_due_{io_};
   std::mutex mutex_;  // guards what follows
   std::multimap<Clock::time_point, std::pair<PeId, Envelope*>> later_;
   std::optional<HangWatch> watch_;
@@ -374,7 +314,8 @@ class Service::Loop {
   bool signalled_ = false;  // a signal that ends the run has come to this process
   bool ending_ = false;     // or to another one
   bool closed_ = false;
-  std::thread thread_;
+  Timekeeper::Timer timer_, answers_due_, abort_due_, job_due_, confirmed_due_, look_due_;
+  Timekeeper thread_{mutex_};  // the last: it ends before what it uses
 };
 
 void Service::Loop::report() {
@@ -411,7 +352,6 @@ void Service::Loop::print_job() {
 }
 
 void Service::Loop::on_signal(int signal) {
-  const std::lock_guard lock(mutex_);
   if (closed_) return;  // the run ends anyway
   if (signal == SIGUSR1) {
     if (ending_) return;

@@ -1,5 +1,5 @@
-// The service of a process: one thread, which sleeps in Boost.Asio until a timer is due or a signal
-// arrives. It is started for signals, or by the first timer on a machine in real time.
+// The service of a process: one thread (timekeeper.hpp), which sleeps until a timer is due or a
+// signal arrives. It is started for signals, or by the first timer on a machine in real time.
 //
 //     SIGUSR1          process 0 prints what waits on all PEs of the job, and the run goes on
 //     report_job()     the same for the page of --monitor, which gets the text instead

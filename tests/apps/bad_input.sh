@@ -62,6 +62,7 @@ few_threads() {
 }
 few_threads true && refuses "hello: error: --pes 16: this system starts no more than [1-9] threads (.*); give fewer PEs" few_threads "$bin/hello" --pes 16
 refuses --nonsense "$bin/hello" --nonsense
+refuses "--monitor 0: this program has no live view; link it with Tessera::live_view" "$bin/hello" --monitor 0
 refuses "more than once" "${transfer[@]}" kuhn:2 kuhn:2 --policy keep --policy nearest
 refuses SOURCE "${transfer[@]}"
 refuses "no --pairs" "${transfer[@]}" kuhn:2 kuhn:2 kuhn:3
