@@ -10,7 +10,7 @@ root=$(cd "$(dirname "$0")/.." && pwd)
 
 source_h=0.04 target_h=0.0358
 source_ladder=(0.16 0.113 0.08 0.0566 0.04) target_ladder=(0.143 0.101 0.0716 0.0506 0.0358)
-built='' into=$root/build/demo
+built='' into=$root/build/demo waited=0
 usage() {
   echo "usage: apps/demo.sh [--quick] [--built BIN] [--into FOLDER]" >&2
   exit 2
@@ -32,11 +32,20 @@ done
 
 if [[ -z $built ]]; then
   cd "$root"
-  bash cmake/setup.sh
-  echo "demo: building"
+  echo "demo: packages, one program and four transfers: about two minutes on two cores"
+  bash cmake/setup.sh --only build
+  # Meshes and plots are wanted later: their packages come while the compiler runs.
   mkdir -p build
-  cmake --preset release >build/demo.log 2>&1 || { cat build/demo.log; exit 1; }
-  cmake --build --preset release --target m2m_transfer -j "$(nproc)" >build/demo.log 2>&1 || { tail -40 build/demo.log; exit 1; }
+  bash cmake/setup.sh --only meshes >build/setup.log 2>&1 &
+  meshes_installed=$!
+  cmake --preset release -DTESS_TESTS=OFF >build/demo.log 2>&1 || { cat build/demo.log; exit 1; }
+  cmake --build --preset release --target m2m_transfer -j "$(nproc)" >build/demo.log 2>&1 &
+  compiled=$!
+  while sleep 1 && kill -0 $compiled 2>/dev/null; do
+    ((++waited % 20 == 0)) && echo "demo: compiled $(tail -n 1 build/demo.log | sed -nE 's/^\[([0-9]+)\/([0-9]+)\].*/\1 of \2/p') after $SECONDS s"
+  done
+  wait $compiled || { tail -40 build/demo.log; exit 1; }
+  wait $meshes_installed || { cat build/setup.log; exit 2; }
   built=$root/build/release/bin
 fi
 transfer=$built/m2m_transfer
@@ -55,30 +64,36 @@ cube() {
   echo "$mesh"
 }
 
-echo "demo: meshing"
 source=$(cube $source_h)
 target=$(cube $target_h)
-echo "== one process, all cores"
-"$transfer" "$source" "$target" --field sin --out "$into/result.exo" --json "$into/result.json" \
-  --picture "$into/result.svg" --explain
+# run NAME COMMAND…: its table goes into a file of this name.
+run() {
+  local table=$into/$1.txt
+  shift
+  "$@" >"$table" 2>&1 || { cat "$table"; exit 1; }
+}
+# row WORD FILE: the rows of a table that begin with it.
+row() { grep -E "^ *$1 " "$into/$2.txt"; }
+echo "demo: the field sin from one mesh of the unit cube to another one ($SECONDS s so far)"
+run result "$transfer" "$source" "$target" --field sin --out "$into/result.exo" --json "$into/result.json" --picture "$into/result.svg" --explain
 for ranks in 1 2; do
-  echo "== mpirun -n $ranks"
-  "${mpirun[@]}" -n "$ranks" "$transfer" "$source" "$target" --field sin --pes 1 --json "$into/result_$ranks.json"
+  run result_$ranks "${mpirun[@]}" -n $ranks "$transfer" "$source" "$target" --field sin --pes 1 --json "$into/result_$ranks.json"
 done
-
-data=${TESS_DATA:-$root/../shared/data}
-coarse=$data/nalu/3d_tet4_taylor_green_0p4.exo
-fine=$data/nalu/3d_tet4_taylor_green_0p2.exo
-if [[ -e $coarse && -e $fine ]]; then
-  echo "== two meshes of a flow solver, ExodusII"
-  "$transfer" "$coarse" "$fine" --field sin
+row 'vertices' result
+grep -E -A 1 '^ *error' "$into/result.txt"
+grep -E -A 1 '^ *seconds' "$into/result.txt"
+hashes=$(for name in result result_1 result_2; do row result $name | awk '{ print $2 }'; done | sort -u)
+if (($(wc -w <<<"$hashes") != 1)); then
+  echo "demo: error: the results differ on threads, one rank and two ranks:" $hashes >&2
+  exit 1
 fi
+echo "the same on threads, one rank and two ranks: hash $hashes"
 
-echo "== error against run time: unstructured cubes, each onto a slightly finer one"
 sources=() targets=()
 for h in "${source_ladder[@]}"; do sources+=("$(cube "$h")"); done
 for h in "${target_ladder[@]}"; do targets+=("$(cube "$h")"); done
 list() { (IFS=,; echo "$*"); }
-"$transfer" "$(list "${sources[@]}")" "$(list "${targets[@]}")" --field sin --study "$into/study"
-echo "demo: written: $into/result.svg (a picture: open it in a browser), result.exo (for ParaView), result.json,"
-echo "demo:          $into/study/error_time.svg, error_edge.svg, study.csv, study.json"
+run study "$transfer" "$(list "${sources[@]}")" "$(list "${targets[@]}")" --field sin --study "$into/study"
+echo "error against run time, ${#sources[@]} meshes: L2 error ~ edge^$(tail -n 2 "$into/study.txt" | awk '$1 == "sin" { print $2 }'), error ~ seconds^$(tail -n 2 "$into/study.txt" | awk '$1 == "sin" { print $4 }')"
+echo "demo: done after $SECONDS s. In $into: result.svg, study/error_time.svg (pictures), result.exo (ParaView),"
+echo "demo: result.txt (what was used and left out), result.json, study.txt, study/study.json"

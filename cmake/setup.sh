@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # Installs the packages that Tessera builds on, as far as they are missing. Quick when nothing is missing.
 #
-#   cmake/setup.sh [--dry-run] [--peers] [--fuzz] [--with-browser]
+#   cmake/setup.sh [--dry-run] [--only SET[,SET]] [--peers] [--fuzz] [--with-browser]
 #     --dry-run: says what it would do, and does nothing
+#     --only: build (compiles the programs), meshes (generates meshes, plots), tests; all three without it
 #     --peers: also the libraries beside which benchmarks run
 #     --fuzz: also clang's libraries for tests/fuzz
 #     --with-browser: also Chromium for the test of the page of --monitor, which is skipped otherwise; about 100 MB
@@ -10,13 +11,14 @@
 # Exit code 2, and no package is changed, where apt would remove one, where it does not know one, or where it may not install.
 set -euo pipefail
 
-packages=(
-  g++-12 cmake ninja-build git pkg-config clang-format-16 clang-tidy
+build=(
+  g++-12 cmake ninja-build git pkg-config
   openmpi-bin libopenmpi-dev libhwloc-dev libboost1.81-dev
-  libfmt-dev libcli11-dev nlohmann-json3-dev catch2
+  libfmt-dev libcli11-dev nlohmann-json3-dev
   libexodusii-dev libtrilinos-zoltan-dev libscotch-dev zlib1g-dev libbrotli-dev
-  gmsh gnuplot-nox
 )
+meshes=(gmsh gnuplot-nox)
+tests=(clang-format-16 clang-tidy catch2)
 refuse() {
   echo "setup: error: $*" >&2
   exit 2
@@ -26,14 +28,27 @@ refuse() {
 peers=(libembree-dev libfcl-dev)
 fuzz=(clang-16 libclang-rt-16-dev libfuzzer-16-dev)
 dry=false
-for option; do
-  case "$option" in
+packages=()
+sets=build,meshes,tests
+while (($# > 0)); do
+  case "$1" in
     --dry-run) dry=true ;;
+    --only) sets=${2:-}; shift ;;
     --peers) packages+=("${peers[@]}") ;;
     --fuzz) packages+=("${fuzz[@]}") ;;
     --with-browser) packages+=(chromium) ;;
-    --help | -h) sed -n '2,10s/^# \{0,1\}//p' "$0"; exit 0 ;;
-    *) refuse "unknown option $option: there are --dry-run, --peers, --fuzz and --with-browser" ;;
+    --help | -h) sed -n '2,11s/^# \{0,1\}//p' "$0"; exit 0 ;;
+    *) refuse "unknown option $1: there are --dry-run, --only, --peers, --fuzz and --with-browser" ;;
+  esac
+  shift
+done
+IFS=, read -r -a sets <<<"$sets"
+for set in "${sets[@]:-}"; do
+  case "$set" in
+    build) packages+=("${build[@]}") ;;
+    meshes) packages+=("${meshes[@]}") ;;
+    tests) packages+=("${tests[@]}") ;;
+    *) refuse "--only '$set': there are build, meshes and tests" ;;
   esac
 done
 command -v apt-get >/dev/null || refuse "this script uses apt; install by hand what cmake/setup.sh lists, or the like: ${packages[*]}"

@@ -124,21 +124,23 @@ function(tess_not_timed)
   endforeach()
 endfunction()
 
-# tess_sanitized(TEST PROGRAM): tests/run.sh runs this test with sanitizers, too.
-function(tess_sanitized test program)
-  set_property(TEST ${test} APPEND PROPERTY LABELS sanitized)
-  if(NOT TARGET sanitized_tests)
-    add_custom_target(sanitized_tests)
+# tess_quick(TEST PROGRAM…): the quick tier (tests/run.sh) builds these programs and runs this test, with sanitizers.
+function(tess_quick test)
+  set_property(TEST ${test} APPEND PROPERTY LABELS quick)
+  if(NOT TARGET quick_tests)
+    add_custom_target(quick_tests)
   endif()
-  add_dependencies(sanitized_tests ${program})
+  if(ARGN)
+    add_dependencies(quick_tests ${ARGN})
+  endif()
 endfunction()
 
-# tess_test(NAME [TSAN] [SANITIZED] SOURCES … DEPENDS … LABELS …): a Catch2 program in bin/, run by ctest.
+# tess_test(NAME [TSAN] [QUICK] SOURCES … DEPENDS … LABELS …): a Catch2 program in bin/, run by ctest.
 # A test case tagged [.] is hidden: it runs by hand only (soak, seeds, benchmarks).
 # TSAN: it has threads, so the thread sanitizer has something to say about it; not about cases tagged [one_thread].
-# SANITIZED: it runs with sanitizers each time; the others by hand.
+# QUICK: it belongs to the quick tier, since planted bugs are found by it (tests/mutants/).
 function(tess_test name)
-  cmake_parse_arguments(ARG "TSAN;SANITIZED" "" "SOURCES;DEPENDS;LABELS" ${ARGN})
+  cmake_parse_arguments(ARG "TSAN;QUICK" "" "SOURCES;DEPENDS;LABELS" ${ARGN})
   if(TESS_SANITIZE STREQUAL "thread" AND NOT ARG_TSAN)
     return()
   endif()
@@ -150,7 +152,7 @@ function(tess_test name)
   endif()
   add_test(NAME ${name} COMMAND ${name} ${cases})
   set_tests_properties(${name} PROPERTIES LABELS "${ARG_LABELS}" TIMEOUT 600)
-  if(ARG_SANITIZED)
-    tess_sanitized(${name} ${name})
+  if(ARG_QUICK)
+    tess_quick(${name} ${name})
   endif()
 endfunction()

@@ -1,42 +1,89 @@
 #!/usr/bin/env bash
-# Installs what is missing, builds, and runs all tests; then those marked SANITIZED with the address and undefined-behaviour
-# sanitizers, and with the thread sanitizer (without mpi). `tests/run.sh asan tsan` runs all tests of these presets, which
-# takes an hour; `tests/run.sh release` runs one preset alone.
+# The tests, in three tiers; each installs what is missing first.
+#   tests/run.sh        12 minutes: format; one build with the address and undefined-behaviour sanitizers and all checks; the tests
+#                       that find nearly all planted bugs (tests/mutants/README.md), with ten seeds; misuse that must not compile
+#   tests/run.sh full   an hour, before a release: every test in release, tidy, each file alone, the core with the thread sanitizer
+#   tests/run.sh soak   a night: every test with both sanitizers, long seeds, the planted bugs
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-presets=("$@")
-sanitized=false
-if ((${#presets[@]} == 0)); then
-  presets=(release asan tsan)
-  sanitized=true
-fi
-
-bash cmake/setup.sh
-bash cmake/lint.sh
-
+tier=${1:-quick}
+case $tier in
+  # Each stage, and its seconds on two cores.
+  quick) plan=(packages 40 lint 15 build 420 tests 150 files_alone 40) ;;
+  full) plan=(packages 40 lint 15 build 800 files_alone 400 tidy 170 tests 950 tsan_build 250 tsan_tests 300) ;;
+  soak) plan=(packages 40 build 800 tests 3600 tsan_build 600 tsan_tests 1200 seeds 3600 planted_bugs 3600) ;;
+  *) echo "usage: tests/run.sh [full | soak]" >&2; exit 2 ;;
+esac
+jobs=$(nproc)
+passed=0 failed=0 skipped=0
+broken=()
 mkdir -p build
 
-jobs=$(nproc)
-# stage NAME: what begins, and how long it has been going on.
-stage() { printf '== %s (%d s)\n' "$1" "$SECONDS"; }
-for preset in "${presets[@]}"; do
-  targets=(all)
-  tests=()
-  if [[ $preset == release ]]; then
-    targets+=(files_alone)
-  elif $sanitized; then
-    targets=(sanitized_tests)
-    tests=(-L sanitized)
-  fi
-  stage "$preset: build"
-  cmake --preset "$preset" >build/"$preset".log 2>&1 || { cat build/"$preset".log; exit 1; }
-  cmake --build --preset "$preset" --target "${targets[@]}" -j "$jobs" >build/"$preset".log 2>&1 || { tail -60 build/"$preset".log; exit 1; }
-  if [[ $preset == release ]]; then
-    stage "$preset: tidy"
-    bash cmake/tidy.sh
-  fi
-  stage "$preset: test"
-  ctest --preset "$preset" -j "$jobs" "${tests[@]}"
-done
-stage done
+# stage NAME COMMAND…: runs it; says how long the stages before took, and how long this and the later ones may take. The tier goes
+# on after a stage that fails.
+stage() {
+  local name=$1 left=0 i
+  shift
+  for ((i = ${#plan[@]} - 2; i >= 0; i -= 2)); do
+    left=$((left + plan[i + 1]))
+    [[ ${plan[i]} != "$name" ]] || break
+  done
+  printf '== %s: %s (%d s so far, about %d s left)\n' "$tier" "$name" "$SECONDS" "$left"
+  if "$@"; then return 0; fi
+  broken+=("$name")
+}
+# needed NAME COMMAND…: likewise, but nothing is left to do after a failure.
+needed() {
+  stage "$@"
+  if ((${#broken[@]} > 0)); then finish; fi
+}
+build() {  # PRESET TARGET…
+  local preset=$1
+  shift
+  cmake --preset "$preset" >build/"$preset".log 2>&1 || { cat build/"$preset".log; return 1; }
+  cmake --build --preset "$preset" --target "$@" -j "$jobs" >build/"$preset".log 2>&1 || { tail -60 build/"$preset".log; return 1; }
+}
+test_preset() {  # PRESET OPTION…
+  local preset=$1 result=$PWD/build/$1.xml code=0
+  shift
+  rm -f "$result"
+  ctest --preset "$preset" -j "$jobs" --output-junit "$result" "$@" || code=$?
+  # The attributes of the result: tests, failures, and those that were skipped or disabled.
+  number() { sed -nE "s/^[[:space:]]*$1=\"([0-9]+)\".*/\\1/p" "$result" 2>/dev/null | head -n 1; }
+  local all=$(number tests) bad=$(number failures) not_run=$(($(number skipped || true) + $(number disabled || true)))
+  passed=$((passed + ${all:-0} - ${bad:-0} - not_run)) failed=$((failed + ${bad:-0})) skipped=$((skipped + not_run))
+  return $code
+}
+finish() {
+  echo "== $tier: done after $SECONDS s"
+  if ((${#broken[@]} > 0)); then echo "these stages failed: ${broken[*]}"; fi
+  echo "$passed passed, $failed failed, $skipped skipped"
+  exit $((${#broken[@]} > 0 || failed > 0 || passed == 0))
+}
+
+needed packages bash cmake/setup.sh
+if [[ $tier == quick ]]; then
+  export TESS_SEEDS=${TESS_SEEDS:-10}
+  stage lint bash cmake/lint.sh
+  needed build build check quick_tests
+  stage tests test_preset check -L quick
+  stage files_alone bash cmake/files_alone.sh check 40
+elif [[ $tier == full ]]; then
+  stage lint bash cmake/lint.sh
+  needed build build release all
+  stage files_alone bash cmake/files_alone.sh release
+  stage tidy bash cmake/tidy.sh
+  stage tests test_preset release
+  needed tsan_build build tsan quick_tests
+  TESS_SEEDS=3 stage tsan_tests test_preset tsan -L quick -L runtime
+else
+  needed build build check all
+  stage tests test_preset check
+  needed tsan_build build tsan all
+  stage tsan_tests test_preset tsan
+  soak_seeds() { build release protocol_fuzz collide_fuzz && build/release/bin/protocol_fuzz --seeds 0:10000 && build/release/bin/collide_fuzz --seeds 0:10000; }
+  stage seeds soak_seeds
+  stage planted_bugs python3 tests/mutants.py
+fi
+finish

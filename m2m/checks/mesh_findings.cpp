@@ -12,10 +12,10 @@ namespace {
 constexpr double ulp = 0x1p-52;
 constexpr double least_ulps = 64;
 constexpr double least_edge = 1e-80;
-constexpr double largest_coordinate = 1e100;  // volumes stay in the range of double
+constexpr double most_coordinate = 1e100;  // volumes stay in the range of double
 
 bool can_be_used(double x) {
-  return std::abs(x) <= largest_coordinate;  // false for NaN
+  return std::abs(x) <= most_coordinate;  // false for NaN
 }
 
 /// An application may leave its mesh without a name.

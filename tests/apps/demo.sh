@@ -26,10 +26,11 @@ study = read("study/study.json")
 assert len(study["pairs"]) == 3, "pairs of the study"
 order = study["trends"][0]["l2_of_edge"]
 assert 1.7 < order < 2.3, f"order {order}"
-for name in ("result.exo", "result.svg", "study/error_time.csv", "study/error_edge.csv", "study/study.csv"):
+for name in ("result.exo", "result.svg", "result.txt", "study.txt", "study/error_time.csv", "study/error_edge.csv", "study/study.csv"):
     assert os.path.getsize(os.path.join(folder, name)) > 100, name
-for heading in ("one process", "mpirun -n 1", "mpirun -n 2", "error against run time"):
-    assert f"== {heading}" in log, heading
+assert f"on threads, one rank and two ranks: hash {pairs[0]['result_hash']}" in log, log
+assert f"L2 error ~ edge^{order:.2f}" in log, log
+assert len(log.splitlines()) <= 14, log
 print(f"demo: one hash in three runs, order {order:.2f}")
 PYTHON
 code=$?

@@ -57,7 +57,7 @@ expect "a dry run on a fresh machine" 0 "it would fetch its lists first" no UNKN
 expect "a package is unknown, or there is no network" 2 "E: Unable to locate package gmsh; nothing was changed" no UNKNOWN=always --
 expect "Boost would be removed" 2 "apt would remove libboost1.74-dev libcgal-dev" no "REMOVES=libboost1.74-dev libcgal-dev" --
 expect "a dry run says so, too" 2 "-DBoost_ROOT" no REMOVES=libboost1.74-dev -- --dry-run
-needed=$(sed -n '/^packages=(/,/^)/p' "$setup" | tr '\n' ' ')
+needed=$(sed -n '/^build=(/,/^)/p; /^meshes=(/p; /^tests=(/p' "$setup" | tr '\n()' '   ')
 expect "benchmarks' libraries on request" 0 "would install libembree-dev libfcl-dev" no "HAVE=$needed" -- --dry-run --peers
 expect "no library of a benchmark otherwise" 0 "packages are installed" no "HAVE=$needed" --
 expect "an unknown option" 2 "unknown option --all" no -- --all
