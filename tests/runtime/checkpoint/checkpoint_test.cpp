@@ -7,9 +7,9 @@
 #include "tests/runtime/checkpoint/world.hpp"
 #include "tests/support/adversarial.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/n_seeds.hpp"
 #include "tests/support/scratch.hpp"
 
-#include <cstdlib>
 
 namespace {
 
@@ -55,17 +55,12 @@ std::uint64_t reference() {
   return log;
 }
 
-std::uint64_t n_seeds() {
-  const char* const given = std::getenv("TESS_SEEDS");
-  return given != nullptr ? std::strtoull(given, nullptr, 10) : 60;
-}
-
 }  // namespace
 
 TEST_CASE("a run that restarts on another number of PEs has the results of one that never stopped",
           "[runtime][checkpoint]") {
   const std::uint64_t expected = reference();
-  for (std::uint64_t seed = 0; seed < n_seeds(); ++seed) {
+  for (std::uint64_t seed = 0; seed < tess::test::n_seeds(60); ++seed) {
     INFO("seed " << seed);
     const tess::test::Scratch scratch;
     const std::string folder = scratch.path("saved");
