@@ -13,7 +13,7 @@ set -euo pipefail
 packages=(
   g++-12 cmake ninja-build git pkg-config clang-format-16 clang-tidy
   openmpi-bin libopenmpi-dev libhwloc-dev libboost1.81-dev
-  libfmt-dev libcli11-dev nlohmann-json3-dev catch2
+  libfmt-dev nlohmann-json3-dev catch2
   libexodusii-dev libtrilinos-zoltan-dev libscotch-dev zlib1g-dev libbrotli-dev
   gmsh gnuplot-nox
 )
