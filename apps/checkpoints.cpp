@@ -13,7 +13,7 @@
 
 namespace apps {
 
-void Checkpoints::add_options(CommandLine& line) {
+void Checkpoints::add_options(tess::CommandLine& line) {
   line.option("--checkpoint DIR", folder_,
               "write checkpoints into this folder; the last two are kept");
   line.option("--checkpoint-every STEPS|TIME", every_,
@@ -24,7 +24,7 @@ void Checkpoints::add_options(CommandLine& line) {
   line.option("--restart DIR", restart_, "continue from the last good checkpoint in this folder");
 }
 
-void Checkpoints::check(const CommandLine& line, const std::vector<std::string>& of_problem) {
+void Checkpoints::check(const tess::CommandLine& line, const std::vector<std::string>& of_problem) {
   check_every();
   check_folders();
   for (const char* option : {"--checkpoint-every", "--checkpoint-buddy"})

@@ -21,8 +21,8 @@
 // there; an option that is given again must have the value that it had.
 #pragma once
 
-#include "apps/command_line.hpp"
 #include "runtime/checkpoint.hpp"
+#include "runtime/command_line.hpp"
 #include "runtime/core/duration.hpp"
 
 #include <cstdint>
@@ -35,11 +35,11 @@ namespace apps {
 
 class Checkpoints {
  public:
-  void add_options(CommandLine& line);
+  void add_options(tess::CommandLine& line);
   /// Throws tess::Error for values that cannot be used, and for a folder with checkpoints of
   /// another run. `of_problem`: the options whose values a restart cannot change. Called before the
   /// program changes the values of its options.
-  void check(const CommandLine& line, const std::vector<std::string>& of_problem);
+  void check(const tess::CommandLine& line, const std::vector<std::string>& of_problem);
 
   /// True if --checkpoint or --restart is given.
   [[nodiscard]] bool are_used() const { return !folder_.empty() || restarts(); }

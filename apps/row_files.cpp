@@ -8,7 +8,7 @@
 
 namespace apps {
 
-void RowFiles::add_options(CommandLine& line) {
+void RowFiles::add_options(tess::CommandLine& line) {
   line.option("--json FILE", json_, "write the rows to this file");
   line.option("--plot FILE", picture_, "with --study: draw them to this SVG file");
 }

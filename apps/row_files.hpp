@@ -1,8 +1,8 @@
 // Where a program writes the rows of its runs: --json, and --plot for the rows of a study.
 #pragma once
 
-#include "apps/command_line.hpp"
 #include "apps/plot/chart.hpp"
+#include "runtime/command_line.hpp"
 
 #include <nlohmann/json.hpp>
 #include <string>
@@ -11,7 +11,7 @@ namespace apps {
 
 class RowFiles {
  public:
-  void add_options(CommandLine& line);
+  void add_options(tess::CommandLine& line);
   /// Throws tess::Error for a file that cannot be written, for two that are one (also `trace`, the
   /// file of --trace), and for a picture without a study.
   void check(bool is_study, const std::string& trace) const;

@@ -14,7 +14,7 @@ set -euo pipefail
 build=(
   g++-12 cmake ninja-build git pkg-config
   openmpi-bin libopenmpi-dev libhwloc-dev libboost1.81-dev
-  libfmt-dev libcli11-dev nlohmann-json3-dev
+  libfmt-dev nlohmann-json3-dev
   libexodusii-dev libtrilinos-zoltan-dev libscotch-dev zlib1g-dev libbrotli-dev
 )
 meshes=(gmsh gnuplot-nox)

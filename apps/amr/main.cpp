@@ -1,10 +1,10 @@
 // amr: a field that is carried through a periodic cube, on an oct-tree of blocks that follows it.
 #include "apps/amr/report.hpp"
 #include "apps/amr/stability.hpp"
-#include "apps/command_line.hpp"
 #include "apps/progress.hpp"
 #include "apps/row_files.hpp"
 #include "apps/wrong_answer.hpp"
+#include "runtime/command_line.hpp"
 #include "runtime/runtime.hpp"
 
 #include <algorithm>
@@ -86,7 +86,7 @@ int start(tess::Setup& setup, int argc, char** argv) {
   std::vector<double> velocity(problem.velocity.begin(), problem.velocity.end());
   std::vector<double> centre(problem.centre.begin(), problem.centre.end());
   std::string balance;
-  apps::CommandLine line(
+  tess::CommandLine line(
       "Advection of a Gaussian on an oct-tree of blocks, each a chare, that follows it.");
   line.option("--max-level", problem.most_level, "finest blocks: edge 2^-N").between(0, 8);
   line.option("--least-level", problem.least_level, "coarsest blocks").between(0, 5);
@@ -117,7 +117,7 @@ int start(tess::Setup& setup, int argc, char** argv) {
       line, {"--max-level", "--least-level", "--cells", "--order", "--cfl", "--time", "--width",
              "--velocity", "--centre", "--refine", "--change-every", "--uncorrected"});
   if (line.is_given("--steps") && line.is_given("--time"))
-    apps::refuse_together("--steps " + line.value("--steps"), "--time " + line.value("--time"));
+    tess::refuse_together("--steps " + line.value("--steps"), "--time " + line.value("--time"));
   std::ranges::copy(velocity, problem.velocity.begin());
   std::ranges::copy(centre, problem.centre.begin());
   problem.corrected = !options.uncorrected;

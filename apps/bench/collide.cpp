@@ -14,8 +14,8 @@
 #include "apps/bench/collide/chare_rows.hpp"
 #include "apps/bench/collide/conversion_rows.hpp"
 #include "apps/bench/collide/one_core.hpp"
-#include "apps/command_line.hpp"
 #include "apps/plot/write_file.hpp"
+#include "runtime/command_line.hpp"
 
 #include <algorithm>
 #include <fmt/core.h>
@@ -62,9 +62,9 @@ int main(int argc, char** argv) {
     bench::CollideOptions options;
     std::string json;
     bool lists = false;
-    apps::CommandLine line("The pairs of boxes in one thread, beside other libraries.");
+    tess::CommandLine line("The pairs of boxes in one thread, beside other libraries.");
     line.option("NAME", options.names, "cases or rows (all by default)");
-    const apps::Option repeat =
+    const tess::Option repeat =
         line.option("--repeat", options.repeat, "samples of each figure, after one that warms up")
             .between(1, 1000);
     line.flag("--growth", options.growth, "also the growth from 2^10 to 2^22 objects");

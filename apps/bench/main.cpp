@@ -5,9 +5,9 @@
 //     bench --pes 1;  bench --pes 2;  mpirun -n 2 bench --pes 1;  bench message one_way --pes 2
 #include "apps/bench/calibrate/calibrate.hpp"
 #include "apps/bench/shapes/shapes.hpp"
-#include "apps/command_line.hpp"
 #include "apps/plot/file_names.hpp"
 #include "apps/plot/write_file.hpp"
+#include "runtime/command_line.hpp"
 
 #include <algorithm>
 #include <fmt/core.h>
@@ -86,9 +86,9 @@ int main(int argc, char** argv) {
     bench::Options options;
     bool lists = false;
     std::string calibrated;
-    apps::CommandLine line("What the runtime costs, beside what the machine allows.");
+    tess::CommandLine line("What the runtime costs, beside what the machine allows.");
     line.option("NAME", options.names, "shapes or rows (all by default)");
-    const apps::Option repeat =
+    const tess::Option repeat =
         line.option("--repeat", options.repeat, "samples of each figure, after one that warms up")
             .between(1, 1000);
     line.flag("--list", lists, "names and meanings of what can be measured on this machine");

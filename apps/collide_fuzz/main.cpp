@@ -7,8 +7,8 @@
 //
 // A failure prints the seed and the scene; the last line is "N passed, N failed".
 #include "apps/collide_fuzz/trial.hpp"
-#include "apps/command_line.hpp"
 #include "apps/seeds.hpp"
+#include "runtime/command_line.hpp"
 #include "runtime/core/error.hpp"
 
 #include <csignal>
@@ -58,7 +58,7 @@ struct Tally {
 
 int fuzz(int argc, char** argv) {
   std::string given_seeds = "0:99", only;
-  apps::CommandLine line("Random collision scenes against brute force");
+  tess::CommandLine line("Random collision scenes against brute force");
   line.option("--seeds FROM:TO", given_seeds, "of the runs, both included");
   line.option("--only", only, "serial, or chares (default: both)").one_of({"serial", "chares"});
   if (!line.parse(argc, argv, "")) return 0;

@@ -3,9 +3,9 @@
 //     collide_scaling --out PREFIX         weak: two wavy planes, 65 536 triangles per PE
 //     collide_scaling --study strong       a crowd of moving bodies, with the balancer on and off
 #include "apps/collide_scaling/report.hpp"
-#include "apps/command_line.hpp"
 #include "apps/plot/write_file.hpp"
 #include "runtime/balance.hpp"
+#include "runtime/command_line.hpp"
 #include "runtime/core/error.hpp"
 
 #include <cstdio>
@@ -44,7 +44,7 @@ int study(int argc, char** argv) {
   Case given;
   std::uint64_t n_triangles = 0;
   std::int32_t thinned = 0, steps = 0;
-  apps::CommandLine line("Steps of a collision on simulated machines of many PEs");
+  tess::CommandLine line("Steps of a collision on simulated machines of many PEs");
   line.option("--study", kind,
               "weak: as many triangles on each PE; strong: one crowd on more and more PEs")
       .one_of({"weak", "strong"});

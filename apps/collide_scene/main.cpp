@@ -3,8 +3,8 @@
 #include "apps/collide_scene/driver.hpp"
 #include "apps/collide_scene/input/load.hpp"
 #include "apps/collide_scene/stability/report.hpp"
-#include "apps/command_line.hpp"
 #include "apps/plot/file_names.hpp"
+#include "runtime/command_line.hpp"
 #include "runtime/runtime.hpp"
 
 #include <string_view>
@@ -23,7 +23,7 @@ bool asks_for_pes(int argc, char** argv) {
 
 int run(tess::Setup& setup, int argc, char** argv, bool asked_for_pes) {
   collide_scene::Options options;
-  apps::CommandLine line(
+  tess::CommandLine line(
       "Finds the objects of a scene that collide. In one thread; with --pes, --sim or under mpirun "
       "on chares.");
   line.option("INPUT", options.inputs,

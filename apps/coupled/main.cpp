@@ -2,9 +2,9 @@
 // solve, the small mesh moves, and two transfers couple them: the fringe of the small mesh gets the
 // values of the background, and the background those of the small mesh where it is deep inside. With
 // --balance the slabs of both migrate between steps.
-#include "apps/command_line.hpp"
 #include "apps/coupled/slab.hpp"
 #include "runtime/balance.hpp"
+#include "runtime/command_line.hpp"
 
 #include <cmath>
 #include <fmt/core.h>
@@ -131,7 +131,7 @@ int main(int argc, char** argv) {
   return tess::guarded(argc, argv, [&](tess::Setup& setup) {
     coupled::Options options;
     std::string balance;
-    apps::CommandLine line(
+    tess::CommandLine line(
         "A field that diffuses on a background mesh and on one that moves through it.");
     line.option("--cubes", options.n, "cubes on an edge of each mesh").between(12, 512);
     line.option("--slabs", options.n_slabs, "pieces per mesh (default: two per PE)")
@@ -140,12 +140,12 @@ int main(int argc, char** argv) {
     line.option("--reaction", options.reaction.factor,
                 "burn where the field is warm: factor of Arrhenius's law (default: 0)")
         .between(0, 1e6);
-    const apps::Option substeps =
+    const tess::Option substeps =
         line.option("--substeps", options.reaction.n_substeps, "of the reaction")
             .between(1, 10'000);
     line.option("--balance STRATEGY", balance,
                 "slabs migrate between steps: a strategy, as greedy_refine[,when=automatic]");
-    const apps::Option balance_every =
+    const tess::Option balance_every =
         line.option("--balance-every", options.balance_every, "steps between rounds")
             .between(1, 1'000'000);
     if (!line.parse(argc, argv)) return 0;

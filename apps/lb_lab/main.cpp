@@ -1,7 +1,6 @@
 // lb_lab: the effect of the number of chares per PE, of the strategy and its period on run time,
 // and their cost. Runs workloads with a known answer under every given strategy and cut, or
 // strategies on saved snapshots.
-#include "apps/command_line.hpp"
 #include "apps/lb_lab/output/replay.hpp"
 #include "apps/lb_lab/output/report.hpp"
 #include "apps/lb_lab/sweep.hpp"
@@ -9,6 +8,7 @@
 #include "apps/plot/file_names.hpp"
 #include "apps/plot/write_file.hpp"
 #include "apps/wrong_answer.hpp"
+#include "runtime/command_line.hpp"
 #include "runtime/runtime.hpp"
 
 namespace lb_lab {
@@ -28,7 +28,7 @@ tess::Task measure(Settings settings, double steps_a_second) {
   if (!sweep.wrong.empty()) apps::end_with("lb_lab: wrong answer: " + sweep.wrong);
 }
 
-void add_options(apps::CommandLine& line, Settings& s) {
+void add_options(tess::CommandLine& line, Settings& s) {
   line.option("--workload NAMES", s.workloads, "names, or all (--list)").separated_by(',');
   line.option("--per-pe", s.per_pe, "chares per PE: cuts of the same work").separated_by(',');
   line.option("--strategy NAMES", s.strategies,
@@ -71,7 +71,7 @@ void add_options(apps::CommandLine& line, Settings& s) {
 
 /// A replay reads snapshots and runs nothing, so it has no use for the options of runs, nor a run
 /// for those of replays.
-void require_one_purpose(const apps::CommandLine& line, bool replays) {
+void require_one_purpose(const tess::CommandLine& line, bool replays) {
   if (!replays) {
     for (const char* const name : {"--pes-of-replay", "--fold"})
       if (line.is_given(name))
@@ -95,7 +95,7 @@ void require_one_purpose(const apps::CommandLine& line, bool replays) {
 int start(tess::Setup& setup, int argc, char** argv) {
   Settings settings;
   bool list = false;
-  apps::CommandLine line("Experiments with overdecomposition and load balancing.");
+  tess::CommandLine line("Experiments with overdecomposition and load balancing.");
   add_options(line, settings);
   line.flag("--list", list, "list workloads and strategies");
   if (!line.parse(argc, argv)) return 0;

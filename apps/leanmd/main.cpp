@@ -1,11 +1,11 @@
 // leanmd: molecular dynamics on cells and pairs of cells, after the Charm++ miniapp of this name.
-#include "apps/command_line.hpp"
 #include "apps/leanmd/report.hpp"
 #include "apps/leanmd/stability.hpp"
 #include "apps/leanmd/study.hpp"
 #include "apps/plot/file_names.hpp"
 #include "apps/plot/write_file.hpp"
 #include "apps/wrong_answer.hpp"
+#include "runtime/command_line.hpp"
 
 #include <cmath>
 #include <fmt/ranges.h>
@@ -95,10 +95,10 @@ void check_use(const Settings& s, const std::string& trace) {
   if (s.study && !(p.dt >= 8 * least_dt && p.dt <= 0.5 && s.options.n_steps >= 1))
     refuse("--study: takes steps of an eighth to twice of --dt ", p.dt,
            ", from 1e-5 to 1, and at least one of --steps ", s.options.n_steps);
-  if (s.study && s.stability) apps::refuse_together("--study", "--stability");
-  if (s.stability && !s.json.empty()) apps::refuse_together("--json " + s.json, "--stability");
+  if (s.study && s.stability) tess::refuse_together("--study", "--stability");
+  if (s.stability && !s.json.empty()) tess::refuse_together("--json " + s.json, "--stability");
   if (s.explain && (s.study || s.stability))
-    apps::refuse_together("--explain", s.study ? "--study" : "--stability");
+    tess::refuse_together("--explain", s.study ? "--study" : "--stability");
   if ((s.study || s.stability) && s.options.checkpoints.are_used())
     refuse("--checkpoint and --restart: not for --study and --stability");
   if (s.explain && s.options.checkpoints.restarts())
@@ -115,7 +115,7 @@ void check_use(const Settings& s, const std::string& trace) {
 int run(tess::Setup& setup, int argc, char** argv) {
   Settings s;
   Problem& p = s.options.problem;
-  apps::CommandLine line("Molecular dynamics: Lennard-Jones atoms in a periodic box.");
+  tess::CommandLine line("Molecular dynamics: Lennard-Jones atoms in a periodic box.");
   line.option("--cells N,N,N", s.cells, "cells of the box on each axis: as 4,4,4")
       .separated_by(',')
       .takes(3, 3);

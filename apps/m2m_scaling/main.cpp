@@ -2,12 +2,12 @@
 //
 //     m2m_scaling kuhn:80 kuhn:81 --pes 1,16,64,256
 //     m2m_scaling kuhn:200 kuhn:201 --pes 64,128,256,512,1024,2048 --out scaling
-#include "apps/command_line.hpp"
 #include "apps/m2m_scaling/own_process.hpp"
 #include "apps/m2m_scaling/report.hpp"
 #include "apps/m2m_transfer/run/measure.hpp"
 #include "apps/plot/write_file.hpp"
 #include "m2m/transfer_kind.hpp"
+#include "runtime/command_line.hpp"
 #include "runtime/core/error.hpp"
 #include "runtime/machine/simulated.hpp"
 
@@ -75,7 +75,7 @@ int study(int argc, char** argv) {
   std::vector<std::int32_t> pes{1, 4, 16, 64, 256};
   std::string sim = "latency=2us,bandwidth=10GB/s", out;
   std::int32_t repeat = 1;
-  apps::CommandLine line("A transfer between two meshes on simulated machines of many PEs");
+  tess::CommandLine line("A transfer between two meshes on simulated machines of many PEs");
   line.option("SOURCE", request.source, "mesh, as for m2m_transfer");
   line.option("TARGET", request.target, "mesh, as for m2m_transfer");
   line.option("--pes", pes, "PEs of the machines").separated_by(',').between(1, 1 << 20);

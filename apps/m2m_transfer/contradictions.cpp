@@ -1,8 +1,8 @@
 #include "apps/m2m_transfer/contradictions.hpp"
 
-#include "apps/command_line.hpp"
 #include "apps/m2m_transfer/input/lists.hpp"
 #include "apps/m2m_transfer/study/study.hpp"
+#include "runtime/command_line.hpp"
 #include "runtime/core/error.hpp"
 
 #include <initializer_list>
@@ -41,10 +41,10 @@ void refuse_contradictions(const DriverOptions& o, Mode mode) {
     for (const Names& names : unused) o.line->refuse_beside(other, names);
   };
   const auto refuse_all_kinds = [&](const char* other) {
-    if (r.kind == "all") apps::refuse_together("--kind all", other);
+    if (r.kind == "all") tess::refuse_together("--kind all", other);
   };
   const auto refuse_policies = [&](const char* other) {
-    if (o.policies.size() > 1) apps::refuse_together("a second --policy", other);
+    if (o.policies.size() > 1) tess::refuse_together("a second --policy", other);
   };
   switch (mode) {
     case Mode::stability: {

@@ -1,6 +1,5 @@
 #include "apps/m2m_transfer/driver.hpp"
 
-#include "apps/command_line.hpp"
 #include "apps/m2m_transfer/contradictions.hpp"
 #include "apps/m2m_transfer/drive_files.hpp"
 #include "apps/m2m_transfer/output/drift.hpp"
@@ -17,6 +16,7 @@
 #include "apps/m2m_transfer/study/study.hpp"
 #include "apps/plot/write_file.hpp"
 #include "m2m/read_mesh.hpp"
+#include "runtime/command_line.hpp"
 #include "runtime/core/error.hpp"
 
 #include <algorithm>
@@ -243,7 +243,7 @@ int run_stability(Setup& setup, const DriverOptions& options, apps::Progress& pr
 Mode mode_of(const DriverOptions& options) {
   const bool trips = !options.round_trips.empty();
   if (moves_file_fields(options)) {
-    if (trips) apps::refuse_together("--round-trips " + options.round_trips, "fields of files");
+    if (trips) tess::refuse_together("--round-trips " + options.round_trips, "fields of files");
     return Mode::files;
   }
   if (trips) return Mode::round_trips;

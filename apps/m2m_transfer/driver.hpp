@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-namespace apps {
+namespace tess {
 class CommandLine;
-}  // namespace apps
+}  // namespace tess
 
 namespace m2m_transfer {
 
@@ -30,7 +30,7 @@ struct DriverOptions {
   bool kind_is_given = false;        ///< otherwise tables of kinds have all of them
   bool partition_is_given = false;
   /// Knows which options were given (contradictions.hpp); null if the options are not from one.
-  const apps::CommandLine* line = nullptr;
+  const tess::CommandLine* line = nullptr;
 };
 
 /// Returns the exit code.

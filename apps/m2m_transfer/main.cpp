@@ -1,8 +1,8 @@
 // m2m_transfer SOURCE TARGET: moves fields between two tetrahedral meshes, and prints the error of
 // the result and the time of each phase.
-#include "apps/command_line.hpp"
 #include "apps/m2m_transfer/driver.hpp"
 #include "m2m/transfer_kind.hpp"
+#include "runtime/command_line.hpp"
 #include "runtime/runtime.hpp"
 
 namespace m2m_transfer {
@@ -16,7 +16,7 @@ std::string kind_names() {
   return out;
 }
 
-void add_options(apps::CommandLine& line, DriverOptions& options, std::string& study) {
+void add_options(tess::CommandLine& line, DriverOptions& options, std::string& study) {
   Request& request = options.request;
   line.option("SOURCE", request.source,
               "mesh: an ExodusII, gmsh (2.2, 4.1) or VTU file, or kuhn:N, a generated box of 6 N^3 "
@@ -114,7 +114,7 @@ void read_study(const std::string& study, DriverOptions& options) {
 int run(tess::Setup& setup, int argc, char** argv) {
   DriverOptions options;
   std::string study;
-  apps::CommandLine line(
+  tess::CommandLine line(
       "Moves fields between two tetrahedral meshes, and prints the error and the time.");
   add_options(line, options, study);
   if (!line.parse(argc, argv)) return 0;

@@ -1,11 +1,11 @@
 // nqueens: how many ways are there to put n queens on a board of n × n squares such that none
 // attacks another? A tree search in messages with priorities, checked against the known counts.
-#include "apps/command_line.hpp"
 #include "apps/nqueens/parts.hpp"
 #include "apps/nqueens/report.hpp"
 #include "apps/progress.hpp"
 #include "apps/row_files.hpp"
 #include "apps/wrong_answer.hpp"
+#include "runtime/command_line.hpp"
 #include "runtime/runtime.hpp"
 
 #include <algorithm>
@@ -80,7 +80,7 @@ tess::Task measure(Options options) {
 int run(tess::Setup& setup, int argc, char** argv) {
   Options options;
   Problem& problem = options.problem;
-  apps::CommandLine line("Counts the solutions of the n queens problem by a search in messages.");
+  tess::CommandLine line("Counts the solutions of the n queens problem by a search in messages.");
   line.option("N", problem.n, "queens").between(1, most_queens);
   line.option("--grain", options.grain,
               "boards with at most so many rows left are searched serially (default: N - 4)")

@@ -1,12 +1,12 @@
 // A mesh around a body overlaps a background mesh: cuts the hole, finds the donors of the fringes,
 // and moves a field between the two.
-#include "apps/command_line.hpp"
 #include "apps/overset/body.hpp"
 #include "apps/overset/report.hpp"
 #include "apps/overset/wall_study.hpp"
 #include "apps/plot/file_names.hpp"
 #include "apps/plot/write_file.hpp"
 #include "apps/worst.hpp"
+#include "runtime/command_line.hpp"
 #include "runtime/core/number.hpp"
 #include "runtime/runtime.hpp"
 
@@ -121,7 +121,7 @@ void read_study(Options& options, bool has_background, bool has_overset) {
 /// replace an input or another output. `trace`: that of the runtime's option.
 void refuse_contradictions(const Options& options, const std::string& trace) {
   const std::string study = "--study " + options.study;
-  const auto refuse = [&](const std::string& option) { apps::refuse_together(option, study); };
+  const auto refuse = [&](const std::string& option) { tess::refuse_together(option, study); };
   if (!options.study.empty()) {
     if (!options.json.empty()) refuse("--json " + options.json);
     if (!options.request.wall.empty()) refuse("--wall " + options.request.wall);
@@ -145,7 +145,7 @@ void refuse_contradictions(const Options& options, const std::string& trace) {
 int run(tess::Setup& setup, int argc, char** argv) {
   Options options;
   options.problem.n_parts = 0;
-  apps::CommandLine line(
+  tess::CommandLine line(
       "Cuts the hole of a body into a background mesh and couples it with the mesh around the "
       "body.");
   line.option(

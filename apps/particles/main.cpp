@@ -1,12 +1,12 @@
 // particles SCENE.json: moves particles among objects by distance/normal fields, and reports
 // energies, particles that tunnelled, and the time per particle and step.
-#include "apps/command_line.hpp"
 #include "apps/particles/options.hpp"
 #include "apps/particles/output/files.hpp"
 #include "apps/particles/output/report.hpp"
 #include "apps/particles/stability/cases.hpp"
 #include "apps/plot/write_file.hpp"
 #include "runtime/balance/strategy.hpp"
+#include "runtime/command_line.hpp"
 #include "runtime/runtime.hpp"
 
 #include <algorithm>
@@ -85,7 +85,7 @@ int drive(tess::Setup& setup, const Options& options) {
 
 int run(tess::Setup& setup, int argc, char** argv) {
   Options options;
-  apps::CommandLine line("Particles against objects of any shape, by distance/normal fields.");
+  tess::CommandLine line("Particles against objects of any shape, by distance/normal fields.");
   line.option("SCENE", options.scene, "scene file (JSON); --help-scene lists its keys");
   line.option("--steps", options.steps, "steps instead of the scene's").between(0, 1'000'000'000);
   line.option("--json FILE", options.json, "write the result as JSON");

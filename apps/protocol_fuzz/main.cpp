@@ -6,9 +6,9 @@
 //                                                         the scenarios that can, 1 to 3 PEs each
 //
 // A failure prints the command that repeats it; the last line is "N passed, N failed".
-#include "apps/command_line.hpp"
 #include "apps/protocol_fuzz/scenarios.hpp"
 #include "apps/seeds.hpp"
+#include "runtime/command_line.hpp"
 #include "runtime/machine/mpi.hpp"
 
 #include <csignal>
@@ -72,7 +72,7 @@ bool passes(const Job& job, const Scenario& scenario, std::uint64_t seed, std::i
 int fuzz(int argc, char** argv) {
   std::string name = "all", given_seeds = "0:99";
   std::int32_t n_pes = 0;
-  apps::CommandLine line("Protocol scenarios on the simulated machine in adversarial order");
+  tess::CommandLine line("Protocol scenarios on the simulated machine in adversarial order");
   line.option("--scenario NAME", name, "a scenario, or all");
   line.option("--seeds FROM:TO", given_seeds, "of the runs, both included");
   line.option("--pes", n_pes,

@@ -1,7 +1,7 @@
 // Messages around a ring of chares that goes through every PE. Each message adds up the stations it
 // meets; at its end it compares the sum with the closed form, and the stations' visits are counted
 // and compared with the number of hops.
-#include "apps/command_line.hpp"
+#include "runtime/command_line.hpp"
 #include "runtime/runtime.hpp"
 
 #include <fmt/core.h>
@@ -70,7 +70,7 @@ tess::Task go_round(Options options) {
 int main(int argc, char** argv) {
   return tess::guarded(argc, argv, [&](tess::Setup& setup) {
     Options options;
-    apps::CommandLine line("Messages around a ring of chares over all PEs.");
+    tess::CommandLine line("Messages around a ring of chares over all PEs.");
     line.option("--stations", options.stations, "chares in the ring; 0: one per PE")
         .between(0, 1'000'000);
     line.option("--rounds", options.rounds, "how often each message goes round")

@@ -5,11 +5,11 @@
 // them; with --restart it continues from there. With --repeat it runs again from zero, as often as
 // asked for, and the time is the median.
 #include "apps/checkpoints.hpp"
-#include "apps/command_line.hpp"
 #include "apps/median.hpp"
 #include "apps/plot/file_names.hpp"
 #include "apps/plot/write_file.hpp"
 #include "apps/stencil/grid.hpp"
+#include "runtime/command_line.hpp"
 #include "runtime/monitor.hpp"
 #include "runtime/runtime.hpp"
 
@@ -179,7 +179,7 @@ int main(int argc, char** argv) {
   return tess::guarded(argc, argv, [&](tess::Setup& setup) {
     stencil::Options options;
     stencil::Grid& grid = options.grid;
-    apps::CommandLine line("A two-dimensional Jacobi stencil on chares.");
+    tess::CommandLine line("A two-dimensional Jacobi stencil on chares.");
     line.option("--blocks", grid.n_blocks, "blocks on each axis").between(1, 4096);
     line.option("--size", grid.problem.size, "grid points on each axis").between(1, 65536);
     line.option("--steps", grid.n_steps, "Jacobi steps").between(1, 1'000'000'000);

@@ -3,7 +3,7 @@
 //
 //     tess_monitor --connect localhost:8080 [--token T] [--frames N] [--heat Block [--by pe]]
 //     tess_monitor --connect [::1]:8080
-#include "apps/command_line.hpp"
+#include "runtime/command_line.hpp"
 #include "runtime/core/error.hpp"
 
 #include <boost/asio/connect.hpp>
@@ -188,7 +188,7 @@ int watch(const Options& options) {
 int main(int argc, char** argv) {
   return tess::guarded(argv[0], [&] {
     Options options;
-    apps::CommandLine line(
+    tess::CommandLine line(
         "Shows a run that was started with --monitor PORT, as a table in a terminal.");
     line.option("--connect HOST:PORT", options.connect, "HOST:PORT of the run");
     line.option("--token T", options.token, "its --monitor-token");

@@ -10,12 +10,12 @@
 #include "apps/bench/dn_field/openvdb_look_up.hpp"
 #include "apps/bench/dn_field/thread_watch.hpp"
 #include "apps/bench/report.hpp"
-#include "apps/command_line.hpp"
 #include "collide/dn_field/build_field.hpp"
 #include "collide/dn_field/bvh.hpp"
 #include "collide/dn_field/compressed.hpp"
 #include "collide/dn_field/look_up.hpp"
 #include "collide/dn_field/shapes.hpp"
+#include "runtime/command_line.hpp"
 #include "runtime/runtime.hpp"
 
 #include <fmt/core.h>
@@ -214,7 +214,7 @@ int main(int argc, char** argv) {
   return tess::guarded(argv[0], [&] {
     tess::Setup setup = tess::take_options(argc, argv);
     int repeat = 5;
-    apps::CommandLine line(
+    tess::CommandLine line(
         "The cost of building, compressing and looking up distance/normal fields.");
     line.option("--repeat", repeat, "how often each is measured").between(1, 1000);
     if (!line.parse(argc, argv)) return 0;

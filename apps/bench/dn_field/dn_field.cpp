@@ -11,9 +11,9 @@
 #include "apps/bench/dn_field/dn_by_hand.hpp"
 #include "apps/bench/dn_field/thread_watch.hpp"
 #include "apps/bench/report.hpp"
-#include "apps/command_line.hpp"
 #include "collide/dn_field/build_field.hpp"
 #include "collide/dn_field/stepper.hpp"
+#include "runtime/command_line.hpp"
 #include "runtime/runtime.hpp"
 
 #include <functional>
@@ -283,7 +283,7 @@ int main(int argc, char** argv) {
   return tess::guarded(argv[0], [&] {
     tess::Setup setup = tess::take_options(argc, argv);
     bench::Options options;
-    apps::CommandLine line("The cost of a particle's step in a distance/normal field.");
+    tess::CommandLine line("The cost of a particle's step in a distance/normal field.");
     line.option("--particles", options.particles, "how many").between(1000, 100'000'000);
     line.option("--repeat", options.repeat, "how often each is measured").between(1, 1000);
     line.option("--only", options.only, "measures whose name has this in it");

@@ -1,0 +1,265 @@
+#include "runtime/command_line.hpp"
+
+#include "runtime/command_line/option_state.hpp"
+#include "runtime/core/check.hpp"
+#include "runtime/machine/mpi.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <limits>
+#include <span>
+
+namespace tess {
+
+using detail::OptionAccess, detail::OptionState, detail::Texts, detail::refuse;
+
+namespace {
+
+constexpr int unlimited = std::numeric_limits<int>::max();
+
+/// "-x" and "--x", not "-", "-1" and "-.5".
+bool looks_like_option(const std::string& word) {
+  return word.size() > 1 && word[0] == '-' && word[1] != '.' &&
+         std::isdigit(static_cast<unsigned char>(word[1])) == 0;
+}
+
+/// "--steps" of "--steps=5".
+std::string name_in(const std::string& word) {
+  return word.substr(0, word.find('='));
+}
+
+/// How many letters to insert, remove, replace, or swap with their neighbour make b of a.
+std::size_t distance(std::string_view a, std::string_view b) {
+  std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
+  for (std::size_t i = 0; i <= a.size(); ++i)
+    for (std::size_t j = 0; j <= b.size(); ++j) {
+      d[i][j] = i + j;
+      if (i == 0 || j == 0) continue;
+      d[i][j] = std::min(
+          {d[i - 1][j] + 1, d[i][j - 1] + 1, d[i - 1][j - 1] + (a[i - 1] == b[j - 1] ? 0U : 1U)});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+        d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
+    }
+  return d[a.size()][b.size()];
+}
+
+}  // namespace
+
+Option& Option::between(std::int64_t least, std::int64_t most) {
+  state_->range = {least, most};
+  return *this;
+}
+
+Option& Option::positive() {
+  state_->is_positive = true;
+  return *this;
+}
+
+Option& Option::one_of(const std::vector<std::string>& values) {
+  state_->choices = values;
+  state_->placeholder = detail::join(values, '|');
+  return *this;
+}
+
+Option& Option::separated_by(char separator) {
+  state_->separator = separator;
+  return *this;
+}
+
+Option& Option::joined_by(char separator) {
+  state_->joint = separator;
+  state_->most = unlimited;
+  return *this;
+}
+
+Option& Option::takes(int least, int most) {
+  state_->least = least;
+  state_->most_each = state_->most = most;
+  return *this;
+}
+
+bool Option::is_given() const {
+  return state_->is_given;
+}
+
+CommandLine::CommandLine(const std::string& description) : description_(description) {
+  flag("-h,--help", asks_for_help_, "print this text");
+}
+
+CommandLine::~CommandLine() = default;
+
+template <class T>
+Option CommandLine::option(const std::string& name, T& value, const std::string& meaning) {
+  return add(name, &value, detail::access_to<T>(), meaning);
+}
+
+Option CommandLine::flag(const std::string& name, bool& value, const std::string& meaning) {
+  return add(name, &value, detail::access_to<bool>(), meaning).takes(0, 0);
+}
+
+Option CommandLine::add(const std::string& name, void* variable, const OptionAccess& access,
+                        const std::string& meaning) {
+  const std::size_t space = name.find(' ');
+  const Texts names = detail::split(name.substr(0, space), ',');
+  for (const std::string& one : names)
+    TESS_CHECK(find(one) == nullptr, "the program has two options ", one);
+  OptionState& option = *options_.emplace_back(std::make_unique<OptionState>());
+  option.names = names;
+  option.placeholder = space == std::string::npos ? access.placeholder : name.substr(space + 1);
+  option.meaning = meaning;
+  option.heading = name.starts_with('-') ? group_ : "Arguments";
+  option.access = access;
+  option.variable = variable;
+  option.most = access.is_list ? unlimited : 1;
+  return Option(option);
+}
+
+bool CommandLine::parse(int argc, char** argv, const std::string& footer) {
+  const std::string_view path = argv[0];
+  program_ = path.substr(path.rfind('/') + 1);
+  footer_ = footer;
+  for (const auto& option : options_) {
+    option->is_given = false;
+    option->values.clear();
+  }
+  const Texts words(argv + 1, argv + argc);
+  bool options_ended = false;
+  for (std::size_t i = 0; i < words.size();) {
+    const std::string& word = words[i++];
+    if (options_ended || !looks_like_option(word)) {
+      take_argument(word);
+    } else if (word == "--") {
+      options_ended = true;
+    } else if (OptionState& option = known(name_in(word)); &option != options_.front().get()) {
+      i += take_option(option, word, std::span(words).subspan(i));
+    } else {
+      if (detail::speaks_for_job()) print(help());
+      return false;
+    }
+  }
+  for (const auto& option : options_)
+    if (option->is_given) option->assign();
+  return true;
+}
+
+void CommandLine::take_argument(const std::string& word) {
+  for (const auto& option : options_)
+    if (option->is_argument() && option->n_values() < option->most) {
+      option->is_given = true;
+      option->add(word);
+      return;
+    }
+  refuse(text("argument '", word, "' is one too many; leave it out"));
+}
+
+std::size_t CommandLine::take_option(detail::OptionState& option, const std::string& word,
+                                     std::span<const std::string> next) const {
+  const std::string name = name_in(word);
+  option.is_given = true;
+  if (option.most <= 1) option.values.clear();  // the last one counts
+  const int n_before = option.n_values();
+  if (name.size() < word.size()) {
+    if (option.most_each == 0)
+      refuse(text(name, " takes no value; leave out ", word.substr(name.size())));
+    option.add(word.substr(name.size() + 1));
+  }
+  std::size_t n_taken = 0;
+  for (; n_taken < next.size() && option.n_values() - n_before < option.most_each; ++n_taken) {
+    const std::string& value = next[n_taken];
+    // A value that is needed may begin with '-'.
+    const bool is_needed = option.n_values() - n_before < option.least;
+    if (is_needed ? value == "--" || find(name_in(value)) != nullptr : looks_like_option(value))
+      break;
+    option.add(value);
+  }
+  if (option.least > 0 && option.n_values() == n_before) refuse(name + " needs a value");
+  return n_taken;
+}
+
+std::string CommandLine::help() const {
+  std::string out =
+      text(description_, "\nUsage: ", program_, program_.empty() ? "" : " ", "[OPTIONS]");
+  Texts headings{"Arguments"};
+  for (const auto& option : options_) {
+    if (option->is_argument())
+      out += text(" [", option->names.front(), option->most == unlimited ? "...]" : "]");
+    if (std::count(headings.begin(), headings.end(), option->heading) == 0)
+      headings.push_back(option->heading);
+  }
+  out += '\n';
+  for (const std::string& heading : headings) {
+    std::string lines;
+    for (const auto& option : options_)
+      if (option->heading == heading) lines += option->help();
+    if (!lines.empty()) out += text("\n", heading, ":\n", lines);
+  }
+  return text(out, "\n", footer_, footer_.empty() ? "" : "\n");
+}
+
+detail::OptionState* CommandLine::find(std::string_view name) const {
+  for (const auto& option : options_)
+    if (std::count(option->names.begin(), option->names.end(), name) != 0) return option.get();
+  return nullptr;
+}
+
+detail::OptionState& CommandLine::known(const std::string& name) const {
+  if (OptionState* const option = find(name)) return *option;
+  std::string nearest;
+  std::size_t bound = std::min<std::size_t>(3, name.size() / 4 + 1);
+  for (const std::string& line : detail::split(help(), '\n')) {  // with the options of the footer
+    if (!line.starts_with("  -")) continue;
+    for (const std::string& one : detail::split(line.substr(2, line.find(' ', 2) - 2), ',')) {
+      const std::size_t n = distance(name, one);
+      if (n < bound) nearest = one;
+      bound = std::min(bound, n);
+    }
+  }
+  if (nearest.empty()) refuse("unknown option " + name);
+  fail(ErrorCode::bad_argument, "unknown option ", name, " (did you mean ", nearest,
+       "? --help lists the options)");
+}
+
+bool CommandLine::is_given(const std::string& name) const {
+  const OptionState* const option = find(name);
+  return option != nullptr && option->is_given;
+}
+
+void CommandLine::refuse_without(const std::string& what,
+                                 std::initializer_list<const char*> names) const {
+  for (const char* name : names)
+    if (is_given(name))
+      fail(ErrorCode::bad_argument, name, ": needs ", what, "; give one, or leave it out");
+}
+
+void CommandLine::refuse_beside(const std::string& other,
+                                std::initializer_list<const char*> names) const {
+  for (const char* name : names) {
+    if (!is_given(name)) continue;
+    const std::string values = detail::join(find(name)->values, ',');
+    refuse_together(text(name, values.empty() ? "" : " ", values), other);
+  }
+}
+
+std::string CommandLine::value(const std::string& name) const {
+  const OptionState* const option = find(name);
+  TESS_CHECK(option != nullptr, "value(): the program has no option ", name);
+  return option->access.text(option->variable);
+}
+
+void refuse_together(std::string_view option, std::string_view other) {
+  fail(ErrorCode::bad_argument, option, " does not work with ", other, "; leave one of them out");
+}
+
+using Text = const std::string&;
+template Option CommandLine::option(Text, std::int32_t&, Text);
+template Option CommandLine::option(Text, std::uint64_t&, Text);
+template Option CommandLine::option(Text, double&, Text);
+template Option CommandLine::option(Text, std::string&, Text);
+template Option CommandLine::option(Text, std::optional<std::int32_t>&, Text);
+template Option CommandLine::option(Text, std::optional<std::uint64_t>&, Text);
+template Option CommandLine::option(Text, std::vector<std::int32_t>&, Text);
+template Option CommandLine::option(Text, std::vector<std::uint64_t>&, Text);
+template Option CommandLine::option(Text, std::vector<double>&, Text);
+template Option CommandLine::option(Text, std::vector<std::string>&, Text);
+
+}  // namespace tess
