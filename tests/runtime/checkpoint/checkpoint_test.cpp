@@ -10,7 +10,6 @@
 #include "tests/support/n_seeds.hpp"
 #include "tests/support/scratch.hpp"
 
-
 namespace {
 
 constexpr std::int32_t n_steps = 9;
