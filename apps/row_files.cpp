@@ -1,7 +1,6 @@
 #include "apps/row_files.hpp"
 
 #include "apps/plot/file_names.hpp"
-#include "apps/plot/json_text.hpp"
 #include "apps/plot/write_file.hpp"
 #include "runtime/core/error.hpp"
 #include "runtime/here.hpp"
@@ -24,8 +23,8 @@ void RowFiles::check(bool is_study, const std::string& trace) const {
   names.writes_picture("--plot", picture_);
 }
 
-void RowFiles::write(const nlohmann::ordered_json& rows, const plot::Chart& chart) const {
-  const nlohmann::ordered_json file{{"machine", tess::machine().describe()}, {"results", rows}};
+void RowFiles::write(const plot::Json& rows, const plot::Chart& chart) const {
+  const plot::Json file{{"machine", tess::machine().describe()}, {"results", rows}};
   if (!json_.empty()) plot::write_file(json_, plot::json_text(file));
   if (!picture_.empty()) (void)plot::write_svg(picture_, chart);
 }

@@ -2,9 +2,9 @@
 #pragma once
 
 #include "apps/plot/chart.hpp"
+#include "apps/plot/json.hpp"
 #include "runtime/command_line.hpp"
 
-#include <nlohmann/json.hpp>
 #include <string>
 
 namespace apps {
@@ -17,7 +17,7 @@ class RowFiles {
   void check(bool is_study, const std::string& trace) const;
 
   /// What is asked for: the rows with the machine that they are from, and the picture.
-  void write(const nlohmann::ordered_json& rows, const plot::Chart& chart) const;
+  void write(const plot::Json& rows, const plot::Chart& chart) const;
 
  private:
   std::string json_, picture_;

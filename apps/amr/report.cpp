@@ -39,8 +39,8 @@ std::string fault(const Outcome& outcome) {
   return fmt::format("the mass changed by {} of {} quanta", change, outcome.mass_at_start);
 }
 
-nlohmann::ordered_json json_of(const std::vector<Row>& rows) {
-  nlohmann::ordered_json all = nlohmann::ordered_json::array();
+plot::Json json_of(const std::vector<Row>& rows) {
+  plot::Json all = plot::Json::array();
   for (const auto& [settings, o] : rows) {
     const Problem& p = settings.problem;
     all.push_back({{"order", p.order},

@@ -3,8 +3,8 @@
 
 #include "apps/amr/simulate.hpp"
 #include "apps/plot/chart.hpp"
+#include "apps/plot/json.hpp"
 
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -20,7 +20,7 @@ struct Row {
 /// Empty if the mass is what it was, to the quantum.
 [[nodiscard]] std::string fault(const Outcome& outcome);
 
-[[nodiscard]] nlohmann::ordered_json json_of(const std::vector<Row>& rows);
+[[nodiscard]] plot::Json json_of(const std::vector<Row>& rows);
 /// Error against run time, a line per order; and uniform trees of order 2.
 [[nodiscard]] plot::Chart chart_of(const std::vector<Row>& rows);
 

@@ -1,13 +1,12 @@
 #include "apps/leanmd/report.hpp"
 
-#include "apps/plot/json_text.hpp"
+#include "apps/plot/json.hpp"
 #include "runtime/here.hpp"
 
 #include <algorithm>
 #include <chrono>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <nlohmann/json.hpp>
 
 namespace leanmd {
 namespace {
@@ -80,25 +79,25 @@ std::string table(const Options& options, const Outcome& outcome) {
 
 std::string json(const Options& options, const Outcome& outcome) {
   const Problem& p = options.problem;
-  nlohmann::ordered_json rounds = nlohmann::ordered_json::array();
+  plot::Json rounds = plot::Json::array();
   for (const tess::balance::Round& round : outcome.rounds)
     rounds.push_back({{"moved", round.n_moved},
                       {"max_over_average", round.before},
                       {"predicted", round.predicted},
                       {"phase_seconds", round.phase_seconds},
                       {"round_seconds", round.round_seconds}});
-  nlohmann::ordered_json out{{"machine", tess::machine().describe()},
-                             {"atoms", outcome.n_atoms},
-                             {"cells", p.box.n_cells},
-                             {"steps", options.n_steps},
-                             {"dt", p.dt},
-                             {"cutoff", p.cutoff},
-                             {"seconds", outcome.seconds},
-                             {"energy", outcome.energy()},
-                             {"energy_drift", outcome.drift()},
-                             {"wrong_forces", nullptr},
-                             {"balance_rounds", std::move(rounds)},
-                             {"result_hash", fmt::format("{:016x}", outcome.hash)}};
+  plot::Json out{{"machine", tess::machine().describe()},
+                 {"atoms", outcome.n_atoms},
+                 {"cells", p.box.n_cells},
+                 {"steps", options.n_steps},
+                 {"dt", p.dt},
+                 {"cutoff", p.cutoff},
+                 {"seconds", outcome.seconds},
+                 {"energy", outcome.energy()},
+                 {"energy_drift", outcome.drift()},
+                 {"wrong_forces", nullptr},
+                 {"balance_rounds", std::move(rounds)},
+                 {"result_hash", fmt::format("{:016x}", outcome.hash)}};
   if (outcome.wrong_forces >= 0) out["wrong_forces"] = outcome.wrong_forces;
   return plot::json_text(out);
 }

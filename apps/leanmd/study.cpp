@@ -2,12 +2,11 @@
 
 #include "apps/plot/chart.hpp"
 #include "apps/plot/fit.hpp"
-#include "apps/plot/json_text.hpp"
+#include "apps/plot/json.hpp"
 #include "runtime/here.hpp"
 
 #include <cmath>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace leanmd {
 
@@ -52,18 +51,18 @@ std::string study_table(const std::vector<StudyRow>& rows) {
 }
 
 std::string study_json(const std::vector<StudyRow>& rows) {
-  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  plot::Json list = plot::Json::array();
   for (const StudyRow& row : rows) {
-    nlohmann::ordered_json one{{"dt", row.dt},
-                               {"steps", row.n_steps},
-                               {"energy_drift", row.drift},
-                               {"seconds", row.seconds}};
+    plot::Json one{{"dt", row.dt},
+                   {"steps", row.n_steps},
+                   {"energy_drift", row.drift},
+                   {"seconds", row.seconds}};
     if (!row.error.empty()) one["error"] = row.error;
     list.push_back(std::move(one));
   }
-  nlohmann::ordered_json out{{"machine", tess::machine().describe()},
-                             {"fitted_order", nullptr},
-                             {"rows", std::move(list)}};
+  plot::Json out{{"machine", tess::machine().describe()},
+                 {"fitted_order", nullptr},
+                 {"rows", std::move(list)}};
   if (const std::optional<double> order = fitted_order(rows)) out["fitted_order"] = *order;
   return plot::json_text(out);
 }

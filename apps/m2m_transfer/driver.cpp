@@ -10,7 +10,6 @@
 #include "apps/m2m_transfer/result_format.hpp"
 #include "apps/m2m_transfer/run/drift.hpp"
 #include "apps/m2m_transfer/run/measure.hpp"
-#include "apps/m2m_transfer/stability/rows.hpp"
 #include "apps/m2m_transfer/study/checks.hpp"
 #include "apps/m2m_transfer/study/steps.hpp"
 #include "apps/m2m_transfer/study/study.hpp"
@@ -212,34 +211,6 @@ Task run_steps_study(const DriverOptions& options, apps::Progress& progress, boo
   if (!options.json.empty()) plot::write_file(options.json, json(rows));
 }
 
-/// The table of extreme cases. Returns the exit code.
-int run_stability(Setup& setup, const DriverOptions& options, apps::Progress& progress) {
-  constexpr std::size_t n_points = 40000;
-  plot::require_writable("--json", options.json);
-  stability::Ways ways{.policy = parse_policy(options.policies.front())};
-  if (options.partition_is_given)
-    ways.partition = parse_partition_method(options.request.partition);
-  std::vector<stability::Case> cases = stability::generated_cases(n_points);
-  std::vector<TetMesh> meshes;
-  for (const std::string& name : {options.request.source, options.request.target}) {
-    if (name.empty()) continue;
-    meshes.push_back(read_mesh(name));
-    (void)validate(meshes.back());
-    for (stability::Case& one : stability::cases_of(meshes.back(), n_points))
-      cases.push_back(std::move(one));
-  }
-  if (meshes.size() == 2) {
-    cases.push_back(stability::case_between(meshes[0], meshes[1]));
-    cases.push_back(stability::case_between(meshes[1], meshes[0]));
-  }
-  const std::vector<stability::Row> rows = stability::run_cases(setup, cases, ways, progress);
-  progress.clear();
-  if (setup.machine->process().value != 0) return 0;
-  tess::print_text(stability::table(rows));
-  if (!options.json.empty()) plot::write_file(options.json, stability::json(rows));
-  return std::ranges::all_of(rows, &stability::Row::ok) ? 0 : 1;
-}
-
 Mode mode_of(const DriverOptions& options) {
   const bool trips = !options.round_trips.empty();
   if (moves_file_fields(options)) {
@@ -255,10 +226,6 @@ Mode mode_of(const DriverOptions& options) {
 int drive(Setup& setup, const DriverOptions& options) {
   apps::Progress progress(setup.machine->process().value == 0 ? stderr : nullptr);
   const plot::FileNames names = file_names(options, setup.options.trace);
-  if (options.stability) {
-    refuse_contradictions(options, Mode::stability);
-    return run_stability(setup, options, progress);
-  }
   bool failed = false;
   const int code = tess::run(setup, [&]() -> Task {
     const Mode mode = mode_of(options);

@@ -26,7 +26,7 @@ struct DriverOptions {
   std::optional<std::string> study;  ///< "h", "kind" or "steps"
   std::string plot;                  ///< the folder for files of studies and drift; empty: default
   std::string round_trips;           ///< "1,2,5"; empty: no drift table
-  bool stability = false;            ///< the table of extreme cases; also of the meshes given
+  bool stability = false;            ///< set by --stability, which m2m_stability carries out
   bool kind_is_given = false;        ///< otherwise tables of kinds have all of them
   bool partition_is_given = false;
   /// Knows which options were given (contradictions.hpp); null if the options are not from one.

@@ -5,7 +5,7 @@
 #include "apps/m2m_transfer/output/farthest.hpp"
 #include "apps/m2m_transfer/output/found.hpp"
 #include "apps/m2m_transfer/result_format.hpp"
-#include "apps/plot/json_text.hpp"
+#include "apps/plot/json.hpp"
 #include "apps/plot/write_file.hpp"
 #include "m2m/cell_transfer.hpp"
 #include "m2m/count_nan.hpp"
@@ -21,7 +21,6 @@
 
 #include <algorithm>
 #include <fmt/core.h>
-#include <nlohmann/json.hpp>
 #include <optional>
 
 namespace m2m_transfer {
@@ -414,7 +413,7 @@ std::string table(const FileFieldsReport& r) {
 }
 
 std::string json(const FileFieldsReport& r) {
-  nlohmann::ordered_json whole{{"source", r.source}, {"target", r.target}, {"fields", r.fields}};
+  plot::Json whole{{"source", r.source}, {"target", r.target}, {"fields", r.fields}};
   whole.update(json_of(r.source_elements, r.target_elements));
   if (r.searched)
     whole.update({{"inside", r.tally.counts[0]},
@@ -435,7 +434,7 @@ std::string json(const FileFieldsReport& r) {
     whole.update({{"cells_overcovered", r.cell_tally.n_overcovered},
                   {"cells_most_covered", r.cell_tally.most_covered}});
   if (r.n_weights > 0) whole["weights"] = r.n_weights;
-  whole["steps"] = nlohmann::ordered_json::array();
+  whole["steps"] = plot::Json::array();
   for (const MovedStep& step : r.steps)
     whole["steps"].push_back({{"step", step.step},
                               {"time", step.time},

@@ -49,18 +49,18 @@ std::string fault(const Row& row, std::uint64_t expected) {
   return fmt::format("{} is not the first solution", to_text(outcome.solution, problem.n));
 }
 
-nlohmann::ordered_json json_of(const std::vector<Row>& rows) {
-  nlohmann::ordered_json all = nlohmann::ordered_json::array();
+plot::Json json_of(const std::vector<Row>& rows) {
+  plot::Json all = plot::Json::array();
   for (const auto& [problem, outcome, efficiency] : rows) {
-    nlohmann::ordered_json one = {{"n", problem.n},
-                                  {"grain", problem.grain},
-                                  {"form", name_of(problem.form)},
-                                  {"priority", problem.prioritised ? "path" : "none"},
-                                  {"boards", outcome.count.n_boards},
-                                  {"tasks", outcome.n_tasks},
-                                  {"dropped", outcome.n_dropped},
-                                  {"seconds", outcome.seconds},
-                                  {"result_hash", fmt::format("{:016x}", outcome.hash)}};
+    plot::Json one = {{"n", problem.n},
+                      {"grain", problem.grain},
+                      {"form", name_of(problem.form)},
+                      {"priority", problem.prioritised ? "path" : "none"},
+                      {"boards", outcome.count.n_boards},
+                      {"tasks", outcome.n_tasks},
+                      {"dropped", outcome.n_dropped},
+                      {"seconds", outcome.seconds},
+                      {"result_hash", fmt::format("{:016x}", outcome.hash)}};
     if (problem.first)
       one["first"] = outcome.found ? to_text(outcome.solution, problem.n) : "";
     else

@@ -3,8 +3,8 @@
 
 #include "apps/nqueens/search.hpp"
 #include "apps/plot/chart.hpp"
+#include "apps/plot/json.hpp"
 
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -23,7 +23,7 @@ struct Row {
 /// Empty if the answer is right; `expected` is the number of solutions.
 [[nodiscard]] std::string fault(const Row& row, std::uint64_t expected);
 
-[[nodiscard]] nlohmann::ordered_json json_of(const std::vector<Row>& rows);
+[[nodiscard]] plot::Json json_of(const std::vector<Row>& rows);
 /// Efficiency against the number of tasks, a line per form.
 [[nodiscard]] plot::Chart chart_of(const std::vector<Row>& rows);
 

@@ -2,13 +2,12 @@
 
 #include "apps/overset/picture.hpp"
 #include "apps/plot/chart.hpp"
-#include "apps/plot/json_text.hpp"
+#include "apps/plot/json.hpp"
 #include "apps/plot/write_file.hpp"
 #include "m2m/write_exodus.hpp"
 
 #include <cmath>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace overset {
 namespace {
@@ -52,7 +51,7 @@ std::string table(const Request& request, const Problem& problem, const Assembly
 }
 
 std::string json(const Request& request, const Problem& problem, const Assembly& assembly) {
-  nlohmann::ordered_json out{
+  plot::Json out{
       {"background", request.background},
       {"overset", request.overset},
       {"wall",
@@ -68,12 +67,11 @@ std::string json(const Request& request, const Problem& problem, const Assembly&
   for (std::size_t i = 0; i < 2; ++i) {
     const Assembled& mesh = assembly.meshes[i];
     const BlankingReport& r = mesh.report;
-    nlohmann::ordered_json of_mesh{
-        {"name", names[i]},         {"field", r.n_field},
-        {"hole", r.n_hole},         {"fringe", r.n_fringe},
-        {"orphans", r.n_orphans},   {"least_quality", r.least_quality},
-        {"full_quality", r.n_full}, {"linf", mesh.linf},
-        {"rms", mesh.rms},          {"orphan_list", nlohmann::ordered_json::array()}};
+    plot::Json of_mesh{{"name", names[i]},         {"field", r.n_field},
+                       {"hole", r.n_hole},         {"fringe", r.n_fringe},
+                       {"orphans", r.n_orphans},   {"least_quality", r.least_quality},
+                       {"full_quality", r.n_full}, {"linf", mesh.linf},
+                       {"rms", mesh.rms},          {"orphan_list", plot::Json::array()}};
     for (const Orphan& orphan : r.orphans)
       of_mesh["orphan_list"].push_back(
           {{"point", orphan.point}, {"at", orphan.at}, {"reason", name_of(orphan.reason)}});

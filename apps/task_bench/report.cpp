@@ -1,11 +1,10 @@
 #include "apps/task_bench/report.hpp"
 
 #include "apps/plot/chart.hpp"
-#include "apps/plot/json_text.hpp"
+#include "apps/plot/json.hpp"
 #include "apps/plot/write_file.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace task_bench {
 namespace {
@@ -93,10 +92,10 @@ std::string explain(const Settings& settings) {
 
 void write_json(const std::string& path, const std::vector<Result>& results,
                 const std::string& machine) {
-  nlohmann::ordered_json all = nlohmann::ordered_json::array();
+  plot::Json all = plot::Json::array();
   for (const Result& result : results) {
     const Row& first = result.rows.front();
-    nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+    plot::Json rows = plot::Json::array();
     for (const Row& row : result.rows)
       rows.push_back({{"iterations", row.iterations},
                       {"grain_us", rounded(1e6 * row.grain_seconds)},
@@ -104,7 +103,7 @@ void write_json(const std::string& path, const std::vector<Result>& results,
                       {"tasks", row.n_tasks},
                       {"dependences", row.n_dependences},
                       {"efficiency", rounded(row.efficiency)}});
-    nlohmann::ordered_json one = {
+    plot::Json one = {
         {"type", first.type},     {"kernel", first.kernel},  {"width", first.width},
         {"steps", first.steps},   {"pes", first.pes},        {"ranks", first.ranks},
         {"metg_us", nullptr},     {"metg_wall_us", nullptr}, {"metg_is_upper_bound", false},
@@ -116,7 +115,7 @@ void write_json(const std::string& path, const std::vector<Result>& results,
     }
     all.push_back(std::move(one));
   }
-  const nlohmann::ordered_json file = {{"machine", machine}, {"results", std::move(all)}};
+  const plot::Json file = {{"machine", machine}, {"results", std::move(all)}};
   plot::write_file(path, plot::json_text(file));
 }
 

@@ -95,6 +95,10 @@ refuses "--per-pe 3 does not work with --stability" "${alone[@]}" --stability --
 refuses "a second --policy does not work with --stability" "${alone[@]}" --stability --policy keep --policy nearest
 refuses "policy 'perhaps' is unknown" "${alone[@]}" --stability --policy perhaps
 refuses "partition method 'perhaps'" "${alone[@]}" --stability --partition perhaps
+refuses "^m2m_transfer: error: --json .* cannot be written" "${alone[@]}" --stability --json "$scratch/missing/x.json"
+refuses "--stability takes no value" "${alone[@]}" --stability=true
+mkdir "$scratch/lone" && cp "$bin/m2m_transfer" "$scratch/lone"
+refuses "^m2m_transfer: error: --stability: m2m_stability is not beside this program; build it" "$scratch/lone/m2m_transfer" --stability
 # Several chares find it.
 refuses "must be finite and at most 1e100" "${alone[@]}" --pes 2 --steps 20 --move 'B:translate(9e99,0,0)'
 refuses "--move .* does not work with --study" "${alone[@]}" --study steps --move 'translate(1,0,0)'

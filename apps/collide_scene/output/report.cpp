@@ -1,10 +1,9 @@
 #include "apps/collide_scene/output/report.hpp"
 
-#include "apps/plot/json_text.hpp"
+#include "apps/plot/json.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace collide_scene {
 namespace {
@@ -135,7 +134,7 @@ std::string table(const Report& report) {
 std::string json(const Report& report) {
   const RunResult& result = report.result;
   const Answer total = result.total();
-  nlohmann::ordered_json out;
+  plot::Json out;
   const auto set = [&out](const char* key, const auto& value) {
     if (value)
       out[key] = *value;
@@ -168,7 +167,7 @@ std::string json(const Report& report) {
   out["machine"] = report.on_chares ? report.machine : "one thread";
   out["pes"] = report.n_pes;
   out["processes"] = report.n_processes;
-  out["rows"] = nlohmann::ordered_json::array();
+  out["rows"] = plot::Json::array();
   for (std::size_t i = 0; i < result.steps.size(); ++i)
     out["rows"].push_back({{"step", i},
                            {"pairs", result.steps[i].answer.n_pairs},

@@ -1,6 +1,6 @@
 #include "apps/lb_lab/output/replay.hpp"
 
-#include "apps/plot/json_text.hpp"
+#include "apps/plot/json.hpp"
 #include "runtime/balance/datafile/lb_datafile.hpp"
 #include "runtime/balance/fold.hpp"
 #include "runtime/balance/memory.hpp"
@@ -13,7 +13,6 @@
 #include <filesystem>
 #include <fmt/format.h>
 #include <map>
-#include <nlohmann/json.hpp>
 
 namespace lb_lab {
 namespace {
@@ -37,8 +36,8 @@ Snapshot prepared(const Settings& s, Snapshot snapshot) {
 }
 
 /// What a strategy makes of a phase.
-nlohmann::ordered_json row(std::uint64_t phase, const Snapshot& snapshot, const std::string& name,
-                           std::uint64_t seed) {
+plot::Json row(std::uint64_t phase, const Snapshot& snapshot, const std::string& name,
+               std::uint64_t seed) {
   const tess::balance::Strategy strategy = tess::balance::make_strategy(name, seed);
   const auto began = std::chrono::steady_clock::now();
   const tess::balance::Assignment wanted = strategy(snapshot);
@@ -65,15 +64,14 @@ nlohmann::ordered_json row(std::uint64_t phase, const Snapshot& snapshot, const 
           {"pes_over_limit", n_over}};
 }
 
-std::string line_of(const nlohmann::ordered_json& row) {
-  const auto count = [&](const char* key) { return row.at(key).get<std::uint64_t>(); };
-  const auto number = [&](const char* key) { return row.at(key).get<double>(); };
+std::string line_of(const plot::Json& row) {
+  const auto text = [&](const char* key) { return row.at(key).text(); };
+  const auto number = [&](const char* key) { return row.at(key).real(); };
   return fmt::format(
       "{:>6} {:>6} {:>9} {:<14} {:>8.3f} {:>9.3f} {:>8} {:>12} {:>14} {:>12.3f} {:>14} {:>10}\n",
-      count("phase"), count("pes"), count("elements"), row.at("strategy").get<std::string>(),
-      number("imbalance_before"), number("imbalance_predicted"), count("moves"),
-      count("bytes_moved"), count("external_bytes"), 1e3 * number("strategy_seconds"),
-      count("fullest_pe_bytes"), count("pes_over_limit"));
+      text("phase"), text("pes"), text("elements"), text("strategy"), number("imbalance_before"),
+      number("imbalance_predicted"), text("moves"), text("bytes_moved"), text("external_bytes"),
+      1e3 * number("strategy_seconds"), text("fullest_pe_bytes"), text("pes_over_limit"));
 }
 
 }  // namespace
@@ -110,8 +108,7 @@ Replayed replay(const Settings& s) {
       fmt::format("{:>6} {:>6} {:>9} {:<14} {:>8} {:>9} {:>8} {:>12} {:>14} {:>12} {:>14} {:>10}\n",
                   "phase", "PEs", "elements", "strategy", "before", "predicted", "moves", "bytes",
                   "external bytes", "strategy ms", "fullest PE", "over limit");
-  nlohmann::ordered_json root = {{"rows", nlohmann::ordered_json::array()},
-                                 {"left_out", nlohmann::ordered_json::array()}};
+  plot::Json root = {{"rows", plot::Json::array()}, {"left_out", plot::Json::array()}};
   std::vector<tess::balance::Phase> phases =
       tess::balance::read_lb_datafiles(replay_files(s.replay));
   std::map<std::pair<std::string, std::string>, std::size_t> left_out;  // phases per name, reason
@@ -120,8 +117,9 @@ Replayed replay(const Settings& s) {
     for (const std::string& name : names) {
       const std::string why = tess::balance::obstacle(name, snapshot);
       if (why.empty()) {
-        root["rows"].push_back(row(phase.id, snapshot, name, s.seed));
-        out.table += line_of(root["rows"].back());
+        plot::Json one = row(phase.id, snapshot, name, s.seed);
+        out.table += line_of(one);
+        root["rows"].push_back(std::move(one));
       } else if (all) {
         ++left_out[{name, why}];
       } else {

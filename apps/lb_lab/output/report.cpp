@@ -1,7 +1,7 @@
 #include "apps/lb_lab/output/report.hpp"
 
 #include "apps/lb_lab/run/kind.hpp"
-#include "apps/plot/json_text.hpp"
+#include "apps/plot/json.hpp"
 #include "apps/plot/write_file.hpp"
 #include "runtime/balance/strategy.hpp"
 #include "runtime/run.hpp"
@@ -11,7 +11,6 @@
 #include <filesystem>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <nlohmann/json.hpp>
 #include <numeric>
 
 namespace lb_lab {
@@ -29,7 +28,7 @@ double rounded(double value) {
   return std::stod(fmt::format("{:.6g}", value));
 }
 
-nlohmann::ordered_json json_of(const Row& row) {
+plot::Json json_of(const Row& row) {
   return {{"workload", row.workload},
           {"strategy", row.strategy},
           {"per_pe", row.per_pe},
@@ -76,21 +75,21 @@ void print_best(const Sweep& sweep) {
 
 void write_json(const std::string& path, const Sweep& sweep) {
   const Settings& s = sweep.settings;
-  nlohmann::ordered_json root = {
+  plot::Json root = {
       {"machine", sweep.machine}, {"grain", s.grain},           {"period", s.period},
       {"when", s.when},           {"prediction", s.prediction}, {"seed", s.seed},
   };
-  root["rows"] = nlohmann::ordered_json::array();
-  root["ideal_seconds"] = nlohmann::ordered_json::array();
-  root["imbalance_over_iterations"] = nlohmann::ordered_json::array();
+  root["rows"] = plot::Json::array();
+  root["ideal_seconds"] = plot::Json::array();
+  root["imbalance_over_iterations"] = plot::Json::array();
   for (const Row& row : sweep.rows) {
     root["rows"].push_back(json_of(row));
     root["ideal_seconds"].push_back(row.ideal_seconds);
-    nlohmann::ordered_json curve = nlohmann::ordered_json::array();
+    plot::Json curve = plot::Json::array();
     for (const double value : row.imbalance_of_iteration) curve.push_back(rounded(value));
     root["imbalance_over_iterations"].push_back(std::move(curve));
   }
-  root["best"] = nlohmann::ordered_json::array();
+  root["best"] = plot::Json::array();
   for (const std::string& workload : s.workloads)
     root["best"].push_back(json_of(best_of(sweep, workload)));
   plot::write_file(path, plot::json_text(root, 1));

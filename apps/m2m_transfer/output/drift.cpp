@@ -1,14 +1,13 @@
 #include "apps/m2m_transfer/output/drift.hpp"
 
 #include "apps/plot/chart.hpp"
-#include "apps/plot/json_text.hpp"
+#include "apps/plot/json.hpp"
 #include "apps/plot/quoting.hpp"
 #include "apps/plot/write_file.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace m2m_transfer {
 namespace {
@@ -65,10 +64,10 @@ std::string table(const Drift& drift) {
 }
 
 std::string json(const Drift& drift) {
-  nlohmann::ordered_json whole{{"source", drift.source},
-                               {"target", drift.target},
-                               {"policy", drift.policy},
-                               {"machine", drift.machine}};
+  plot::Json whole{{"source", drift.source},
+                   {"target", drift.target},
+                   {"policy", drift.policy},
+                   {"machine", drift.machine}};
   whole["trip_seconds"] = drift.trip_seconds;
   for (const DriftRow& row : drift.rows)
     whole["rows"].push_back({{"kind", row.kind},

@@ -1,10 +1,10 @@
 // The target vertices that lie farthest from the source, in reports.
 #pragma once
 
+#include "apps/plot/json.hpp"
 #include "m2m/worst_places.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -19,8 +19,8 @@ namespace m2m_transfer {
   return out;
 }
 
-[[nodiscard]] inline nlohmann::ordered_json json_of(const tess::m2m::WorstPlaces& places) {
-  nlohmann::ordered_json out = nlohmann::ordered_json::array();
+[[nodiscard]] inline plot::Json json_of(const tess::m2m::WorstPlaces& places) {
+  plot::Json out = plot::Json::array();
   for (const tess::m2m::WorstPlace& p : places.list())
     out.push_back({{"vertex", p.point},
                    {"at", p.at},

@@ -2,10 +2,10 @@
 #pragma once
 
 #include "apps/m2m_transfer/report.hpp"
+#include "apps/plot/json.hpp"
 
 #include <array>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
 #include <vector>
@@ -24,8 +24,7 @@ namespace m2m_transfer {
   return out;
 }
 
-[[nodiscard]] inline nlohmann::ordered_json json_of(const OtherElements& source,
-                                                    const OtherElements& target) {
+[[nodiscard]] inline plot::Json json_of(const OtherElements& source, const OtherElements& target) {
   return {{"skipped", {{"source", source.skipped}, {"target", target.skipped}}},
           {"split", {{"source", source.split}, {"target", target.split}}}};
 }

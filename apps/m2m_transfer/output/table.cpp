@@ -2,12 +2,10 @@
 
 #include "apps/m2m_transfer/output/farthest.hpp"
 #include "apps/m2m_transfer/output/found.hpp"
-#include "apps/plot/json_text.hpp"
 #include "m2m/transfer_kind.hpp"
 
 #include <array>
 #include <fmt/core.h>
-#include <nlohmann/json.hpp>
 
 namespace m2m_transfer {
 namespace {
@@ -16,7 +14,7 @@ double megabytes(std::uint64_t bytes) {
   return static_cast<double>(bytes) / 1e6;
 }
 
-nlohmann::ordered_json norms_of(const ErrorNorms& norms) {
+plot::Json norms_of(const ErrorNorms& norms) {
   return {{"l2", norms.l2},
           {"l2_relative", norms.l2_relative},
           {"rms", norms.rms},
@@ -42,15 +40,15 @@ constexpr std::array definitions{
     Definition{"found", "the same over vertices that are inside, boundary or snapped"}};
 
 /// {"vertices": n, "l2": …}; null if no vertex was found.
-nlohmann::ordered_json found_of(const ErrorNorms& norms) {
+plot::Json found_of(const ErrorNorms& norms) {
   if (norms.n_vertices == 0) return nullptr;
   auto out = norms_of(norms);
   out["vertices"] = norms.n_vertices;
   return out;
 }
 
-nlohmann::ordered_json pair_of(const TransferReport& r) {
-  nlohmann::ordered_json pair;
+plot::Json pair_of(const TransferReport& r) {
+  plot::Json pair;
   pair["source"] = r.source;
   pair["target"] = r.target;
   pair.update(json_of(r.source_elements, r.target_elements));
@@ -87,9 +85,9 @@ nlohmann::ordered_json pair_of(const TransferReport& r) {
   pair["processes"] = r.processes;
   pair["chares"] = r.chares;
   pair["voxel"] = r.voxel;
-  pair["fields"] = nlohmann::ordered_json::array();
+  pair["fields"] = plot::Json::array();
   for (const FieldError& field : r.fields) {
-    nlohmann::ordered_json of_field{{"name", field.name}};
+    plot::Json of_field{{"name", field.name}};
     of_field.update(norms_of(field.norms));
     of_field["integral"] = {{"source", field.source_integral}, {"target", field.target_integral}};
     of_field["found"] = found_of(field.found);
@@ -167,12 +165,16 @@ std::string legend() {
          "  (those outside have the values of the policy)\n";
 }
 
-std::string json(const std::vector<TransferReport>& reports) {
-  nlohmann::ordered_json whole;
+plot::Json json_of(const std::vector<TransferReport>& reports) {
+  plot::Json whole;
   for (const Definition& d : definitions) whole["definitions"][d.name] = d.meaning;
-  whole["pairs"] = nlohmann::ordered_json::array();
+  whole["pairs"] = plot::Json::array();
   for (const TransferReport& report : reports) whole["pairs"].push_back(pair_of(report));
-  return plot::json_text(whole);
+  return whole;
+}
+
+std::string json(const std::vector<TransferReport>& reports) {
+  return plot::json_text(json_of(reports));
 }
 
 }  // namespace m2m_transfer

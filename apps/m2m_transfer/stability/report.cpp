@@ -1,9 +1,8 @@
 #include "apps/m2m_transfer/stability/rows.hpp"
-#include "apps/plot/json_text.hpp"
+#include "apps/plot/json.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace m2m_transfer::stability {
 
@@ -32,7 +31,7 @@ std::string table(const std::vector<Row>& rows) {
 }
 
 std::string json(const std::vector<Row>& rows) {
-  nlohmann::ordered_json whole;
+  plot::Json whole;
   for (const Row& row : rows)
     whole["rows"].push_back({{"case", row.name},
                              {"parameter", row.parameter},

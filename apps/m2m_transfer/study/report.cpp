@@ -2,7 +2,6 @@
 #include "apps/m2m_transfer/study/checks.hpp"
 #include "apps/m2m_transfer/study/study.hpp"
 #include "apps/plot/chart.hpp"
-#include "apps/plot/json_text.hpp"
 #include "apps/plot/quoting.hpp"
 #include "apps/plot/write_file.hpp"
 #include "runtime/core/sort_unique.hpp"
@@ -10,7 +9,6 @@
 #include <algorithm>
 #include <fmt/format.h>
 #include <iterator>
-#include <nlohmann/json.hpp>
 
 namespace m2m_transfer {
 namespace {
@@ -136,11 +134,11 @@ std::string table(const Study& study) {
 }
 
 std::string json(const Study& study) {
-  auto whole = nlohmann::ordered_json::parse(json(study.reports));
+  plot::Json whole = json_of(study.reports);
   whole["repeat"] = study.repeat;
-  whole["trends"] = nlohmann::ordered_json::array();
+  whole["trends"] = plot::Json::array();
   const auto number = [](const std::optional<double>& value) {
-    return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json();
+    return value ? plot::Json(*value) : plot::Json();
   };
   for (const Trend& t : trends(study))
     whole["trends"].push_back({{"field", t.field},

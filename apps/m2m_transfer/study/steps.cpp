@@ -2,14 +2,13 @@
 
 #include "apps/m2m_transfer/run/steps.hpp"
 #include "apps/plot/chart.hpp"
-#include "apps/plot/json_text.hpp"
+#include "apps/plot/json.hpp"
 #include "apps/plot/quoting.hpp"
 #include "apps/plot/write_file.hpp"
 
 #include <algorithm>
 #include <array>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace m2m_transfer {
 namespace {
@@ -70,7 +69,7 @@ std::string table(const std::vector<StepsRow>& rows) {
 }
 
 std::string json(const std::vector<StepsRow>& rows) {
-  nlohmann::ordered_json whole;
+  plot::Json whole;
   for (const StepsRow& row : rows)
     whole["rows"].push_back({{"source", row.source},
                              {"target", row.target},

@@ -1,13 +1,12 @@
 #include "apps/particles/output/report.hpp"
 
-#include "apps/plot/json_text.hpp"
+#include "apps/plot/json.hpp"
 
 #include <fmt/core.h>
-#include <nlohmann/json.hpp>
 
 namespace particles {
 namespace {
-using Json = nlohmann::ordered_json;
+using plot::Json;
 
 std::string_view method_of(const Scene& scene) {
   if (scene.objects.empty()) return "none";
@@ -101,9 +100,8 @@ Json document(const Scene& scene, const RunResult& result, const Report& report)
 
 /// A value in a table; "-" for null.
 std::string shown(const Json& value) {
-  if (value.is_null()) return "-";
-  if (value.is_number_float()) return fmt::format("{:.6g}", value.get<double>());
-  return value.is_string() ? value.get<std::string>() : value.dump();
+  if (value.kind() == Json::Kind::null) return "-";
+  return value.kind() == Json::Kind::real ? fmt::format("{:.6g}", value.real()) : value.text();
 }
 
 }  // namespace
@@ -111,19 +109,22 @@ std::string shown(const Json& value) {
 std::string table(const Scene& scene, const RunResult& result, const Report& report) {
   std::string out;
   const Json whole = document(scene, result, report);
-  for (const auto& [key, value] : whole.items()) {
+  for (const auto& [key, value] : whole.members()) {
     if (key == "rows") continue;
-    std::string text = value.is_object() ? "" : shown(value);
-    if (value.is_object())
-      for (const auto& [name, part] : value.items())
+    const bool has_parts = value.kind() == Json::Kind::object;
+    std::string text = has_parts ? "" : shown(value);
+    if (has_parts)
+      for (const auto& [name, part] : value.members())
         text += (text.empty() ? "" : ", ") + name + " " + shown(part);
     out += fmt::format("  {:<20} {}\n", key, text);
   }
-  for (const auto& [name, value] : whole["rows"].front().items())
+  const std::vector<Json::Member>& rows = whole.at("rows").members();
+  for (const auto& [name, value] : rows.front().value.members())
     out += fmt::format(" {:>12}", name);
-  for (const Json& row : whole["rows"]) {
+  for (const Json::Member& row : rows) {
     out += '\n';
-    for (const Json& value : row) out += fmt::format(" {:>12}", shown(value));
+    for (const auto& [name, value] : row.value.members())
+      out += fmt::format(" {:>12}", shown(value));
   }
   return out + '\n';
 }
