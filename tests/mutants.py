@@ -15,12 +15,14 @@ replaced (they must occur once):
 
 All bugs are planted at once: the function that holds the lines gets a body per bug, and the environment variable
 PLANTED_BUG chooses one when the test runs. A bug outside of functions is planted alone, with a build of its own.
+Each bug meets its test as the quick tier runs it first (ten seeds; not at all if the program is not QUICK), then with all seeds.
 The build in build/mutants is kept, and ninja rebuilds what a change of the sources or of the bugs makes old.
 """
 import argparse
 import collections
 import concurrent.futures
 import dataclasses
+import json
 import os
 import pathlib
 import re
@@ -35,6 +37,7 @@ WORK = ROOT / "build/mutants"
 COPY = WORK / "source"
 BUILD = COPY / "build/release"
 MOST_SECONDS = 600  # of a test without a bug
+QUICK_SEEDS = 10
 
 SWITCH = """#pragma once
 #include <cstdlib>
@@ -64,6 +67,7 @@ class Bug:
     span: tuple = None  # what is replaced in the file
     body: tuple = None  # of the function around it; None outside of functions
     verdict: str = None
+    quick: bool = False  # the quick tier finds it
     why: str = ""
 
 
@@ -242,13 +246,26 @@ def first_failure(log):
     return ""
 
 
-def run(test, number, seconds):
+def quick_programs():
+    listed = json.loads(subprocess.run(["ctest", "--preset", "release", "-L", "quick", "--show-only=json-v1"], cwd=COPY,
+                                       check=True, stdout=subprocess.PIPE, text=True).stdout)
+    return {test["name"] for test in listed["tests"]}
+
+
+def quick_form(test, programs):
+    """The test as the quick tier runs it; None if it does not. Its test_protocols has the scenarios of protocol_fuzz."""
+    if test[0] == "protocol_fuzz":
+        return tuple(re.sub(r"^(\d+):\d+$", lambda m: f"{m[1]}:{int(m[1]) + QUICK_SEEDS - 1}", word) for word in test)
+    return test if test[0] in programs else None
+
+
+def run(test, number, seconds, **environment):
     """Whether the test passes with this bug, its seconds, and its first failure."""
     begin = time.monotonic()
     try:
         abort = ["--abort"] if test[0].startswith("test_") else []  # Catch ends with the first failure
         done = subprocess.run([BUILD / "bin" / test[0], *test[1:], *abort], cwd=COPY, timeout=seconds,
-                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, env={**ENVIRONMENT, "PLANTED_BUG": str(number)})
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, env={**ENVIRONMENT, "PLANTED_BUG": str(number), **environment})
         passes = done.returncode == 0
         by = first_failure(done.stdout.decode(errors="replace")) or f"exit code {done.returncode}"
     except subprocess.TimeoutExpired:
@@ -256,16 +273,22 @@ def run(test, number, seconds):
     return passes, time.monotonic() - begin, "" if passes else by
 
 
-def try_bug(bug, passes):
+def try_bug(bug, passes, programs):
     # A loaded machine is slow: a bug that lets a test run for ever is known by ten times its usual time.
-    survives, seconds, by = run(bug.test, bug.number, 20 + 10 * passes[bug.test])
+    most = 20 + 10 * passes[bug.test]
+    survives, seconds = True, 0.0
+    if quick := quick_form(bug.test, programs):
+        survives, seconds, by = run(quick, bug.number, most, TESS_SEEDS=str(QUICK_SEEDS))
+        bug.quick = not survives
+    if survives:
+        survives, seconds, by = run(bug.test, bug.number, most)
     bug.verdict, bug.why = ("survives" if survives else "caught"), by
     report(bug, seconds)
 
 
 def report(bug, seconds=0.0):
     why = f" ({bug.why})" if bug.why else ""
-    print(f"{bug.verdict:<9} {bug.test[0]:<22} {seconds:5.1f} s  {bug.list}: {bug.name}{why}", flush=True)
+    print(f"{bug.verdict:<9} {'quick' if bug.quick else '':<5} {bug.test[0]:<22} {seconds:5.1f} s  {bug.list}: {bug.name}{why}", flush=True)
 
 
 def main():
@@ -281,29 +304,31 @@ def main():
     texts = locate(bugs)
     targets = {bug.test[0] for bug in chosen}
     plant_all(bugs, texts, targets, options.jobs)
+    programs = quick_programs()
     passes = {}
     for test in sorted({bug.test for bug in chosen}):
         passed, passes[test], by = run(test, 0, MOST_SECONDS)
         if not passed:
             sys.exit(f"mutants.py: fails without a bug: {' '.join(test)}: {by}")
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
-        list(pool.map(lambda bug: try_bug(bug, passes), [b for b in chosen if b.body and not b.verdict]))
+        list(pool.map(lambda bug: try_bug(bug, passes, programs), [b for b in chosen if b.body and not b.verdict]))
     for bug in [b for b in chosen if b.body is None and not b.verdict]:
         kept = (COPY / bug.file).read_bytes()
         text = texts[bug.file]
         write(COPY / bug.file, (text[: bug.span[0]] + bug.new + text[bug.span[1] :]).encode())
         if build({bug.test[0]}, options.jobs) is None:
-            try_bug(bug, passes)
+            try_bug(bug, passes, programs)
         else:
             bug.verdict, bug.why = "stale", "does not compile"
         write(COPY / bug.file, kept)
     for bug in chosen:
         if bug.verdict == "stale":
             report(bug)
-    print(f"{'list':<12} planted caught survived stale")
+    print(f"{'list':<12} planted caught quick survived stale")
     for name in [*dict.fromkeys(b.list for b in chosen), "all"]:
         n = collections.Counter(b.verdict for b in chosen if name in (b.list, "all"))
-        print(f"{name:<12} {n['caught'] + n['survives']:7} {n['caught']:6} {n['survives']:8} {n['stale']:5}")
+        n_quick = sum(b.quick for b in chosen if name in (b.list, "all"))
+        print(f"{name:<12} {n['caught'] + n['survives']:7} {n['caught']:6} {n_quick:5} {n['survives']:8} {n['stale']:5}")
     sys.exit(any(bug.verdict != "caught" for bug in chosen))
 
 
