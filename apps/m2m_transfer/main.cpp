@@ -2,6 +2,7 @@
 // the result and the time of each phase.
 #include "apps/m2m_transfer/driver.hpp"
 #include "apps/m2m_transfer/options.hpp"
+#include "runtime/command_line.hpp"
 #include "runtime/runtime.hpp"
 
 #include <algorithm>
