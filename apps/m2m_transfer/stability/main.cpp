@@ -6,7 +6,6 @@
 #include "apps/plot/write_file.hpp"
 #include "m2m/read_mesh.hpp"
 #include "runtime/command_line.hpp"
-#include "runtime/command_line.hpp"
 #include "runtime/runtime.hpp"
 
 #include <algorithm>
