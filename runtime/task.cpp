@@ -90,8 +90,7 @@ void suspend(Task::Handle task, std::function<detail::WaitReason()> waits_for) {
   account.pe->suspended().insert(account.entry);
 }
 
-void detail::suspend_at(Task::Handle task, void* awaitable,
-                        WaitReason (*waits_for)(void*)) {
+void detail::suspend_at(Task::Handle task, void* awaitable, WaitReason (*waits_for)(void*)) {
   suspend(task, [awaitable, waits_for] { return waits_for(awaitable); });
 }
 

@@ -190,9 +190,8 @@ namespace detail {
 void suspend_at(Task::Handle task, void* awaitable, WaitReason (*waits_for)(void*));
 template <class Awaitable>
 void suspend_on(Task::Handle task, Awaitable& awaitable) {
-  suspend_at(task, &awaitable, [](void* of) -> WaitReason {
-    return static_cast<Awaitable*>(of)->waits_for();
-  });
+  suspend_at(task, &awaitable,
+             [](void* of) -> WaitReason { return static_cast<Awaitable*>(of)->waits_for(); });
 }
 
 /// A suspended coroutine, and the number of results that it waits for before it continues: one; all
