@@ -38,9 +38,9 @@ struct CreateArray {
 /// Makes the part of an array on this PE, with its initial elements.
 template <class C, class... Args>
 void make_array(Pe& pe, const CreateArray<C, Args...>& m,
-                std::shared_ptr<const IndexMap> map = nullptr) {
-  auto& array = static_cast<Array<C>&>(
-      add_collection(pe, Array<C>::its_kind(), m.id, m.range, std::move(map)));
+                const std::shared_ptr<const IndexMap>& map = nullptr) {
+  auto& array =
+      static_cast<Array<C>&>(add_collection(pe, Array<C>::its_kind(), m.id, m.range, map));
   std::apply([&array](const Args&... args) { array.make_initial(args...); }, m.args);
   pe.completion().processed(m.epoch);
 }

@@ -20,7 +20,7 @@ AskBase::AskBase(AskBase&& other) noexcept
 void AskBase::await_suspend(Task::Handle task) {
   own_.start(task, 1);
   wait(own_);
-  suspend(task, [this] { return waits_for(); });
+  suspend_on(task, *this);
 }
 
 void AskBase::wait(Waiter& waiter) {

@@ -3,16 +3,13 @@
 // times.
 #pragma once
 
-#include "runtime/core/algorithm.hpp"
 #include "runtime/core/check.hpp"
 #include "runtime/core/registered_pointer.hpp"
 #include "runtime/core/serialize.hpp"
+#include "runtime/core/target_name.hpp"
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
-#include <memory>
 #include <span>
 #include <string>
 #include <type_traits>
@@ -20,77 +17,6 @@
 #include <vector>
 
 namespace tess {
-
-namespace detail {
-
-/// The bytes that name a target, such as an array and an index. They are few, constant and often
-/// copied: short names are stored in place, long ones are shared.
-class TargetName {
- public:
-  TargetName() = default;
-  explicit TargetName(std::span<const std::byte> bytes) : n_(bytes.size()) {
-    if (n_ <= short_.size()) {
-      std::copy(bytes.begin(), bytes.end(), short_.begin());
-    } else {
-      long_ = std::make_shared<const std::vector<std::byte>>(bytes.begin(), bytes.end());
-    }
-  }
-  /// Names made of bitwise values, packed as a tuple of them. They are written directly to their
-  /// place, since a copy of bytes that were just written would stall.
-  template <Bitwise... Values>
-  explicit TargetName(std::in_place_t /*tag*/, const Values&... values)
-      : n_((sizeof(Values) + ... + 0)) {
-    if constexpr ((sizeof(Values) + ... + 0) <= n_short) {
-      std::byte* at = short_.data();
-      ((std::memcpy(at, &values, sizeof values), at += sizeof values), ...);
-    } else {
-      long_ = std::make_shared<const std::vector<std::byte>>(to_bytes(std::tuple(values...)));
-    }
-  }
-
-  friend bool operator==(const TargetName& a, const TargetName& b) {
-    if (a.n_ != b.n_) return false;
-    if (a.long_) return *a.long_ == *b.long_;
-    // In pieces as they were written: a load across two that were just written would stall.
-    std::size_t at = 0;
-    for (; at + 8 <= a.n_; at += 8)
-      if (piece<std::uint64_t>(a, at) != piece<std::uint64_t>(b, at)) return false;
-    for (; at + 4 <= a.n_; at += 4)
-      if (piece<std::uint32_t>(a, at) != piece<std::uint32_t>(b, at)) return false;
-    for (; at < a.n_; ++at)
-      if (a.short_[at] != b.short_[at]) return false;
-    return true;
-  }
-
-  [[nodiscard]] std::span<const std::byte> view() const {
-    return long_ ? std::span<const std::byte>(*long_) : std::span(short_).first(n_);
-  }
-
-  template <class Ar>
-  void serialize(Ar& ar) {
-    if constexpr (Ar::is_reading) {
-      *this = TargetName(ar.template take<std::vector<std::byte>>());
-    } else {
-      const auto bytes = view();
-      ar(std::vector<std::byte>(bytes.begin(), bytes.end()));
-    }
-  }
-
- private:
-  template <class Piece>
-  [[nodiscard]] static Piece piece(const TargetName& of, std::size_t at) {
-    Piece bytes{};
-    std::memcpy(&bytes, of.short_.data() + at, sizeof bytes);
-    return bytes;
-  }
-
-  std::size_t n_ = 0;
-  static constexpr std::size_t n_short = 24;
-  std::array<std::byte, n_short> short_{};
-  std::shared_ptr<const std::vector<std::byte>> long_;
-};
-
-}  // namespace detail
 
 template <class T>
 class Callback {

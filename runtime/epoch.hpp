@@ -11,49 +11,46 @@
 #include "runtime/task.hpp"
 
 #include <exception>
+#include <functional>
+#include <string>
 #include <utility>
 
 namespace tess {
 
 namespace detail {
 
-template <class Body>
-class [[nodiscard]] EpochAwait {
+/// What awaited epochs have in common; the type of the body is left out.
+class EpochBase {
  public:
-  explicit EpochAwait(Body body) : body_(std::move(body)) {}
-
   [[nodiscard]] bool await_ready() const noexcept { return false; }
-  void await_suspend(Task::Handle task) {
-    suspend(task, [this] { return waits_for(); });
-    begin([task] { resume_later(task); });
-  }
   [[nodiscard]] bool failed() const { return error_ != nullptr; }
   void await_resume() const {
     if (error_) std::rethrow_exception(error_);
   }
-  [[nodiscard]] std::string waits_for() const {
-    return text("epoch ", id_.value >> 24U, " that it opened");
-  }
-  /// Runs the body; calls `done` on this PE once all its consequences are done.
-  template <class Done>
-  void begin(const Done& done) {
-    Pe& pe = current_pe();
-    const EpochId outer = pe.context().epoch;
-    const EpochId epoch = id_ = pe.completion().open(outer, done);
-    pe.context().epoch = epoch;
-    try {
-      body_();
-    } catch (...) {
-      error_ = std::current_exception();  // rethrown in the coroutine once the started work is done
-    }
-    pe.context().epoch = outer;
-    pe.completion().close(epoch);
-  }
+  [[nodiscard]] std::string waits_for() const;
+
+ protected:
+  using Run = void (*)(EpochBase&);
+  void suspend_until_done(Task::Handle task, Run body);
+  void begin(Run body, std::function<void()> done);
 
  private:
-  Body body_;
   EpochId id_{};
   std::exception_ptr error_;
+};
+
+template <class Body>
+class [[nodiscard]] EpochAwait : public EpochBase {
+ public:
+  explicit EpochAwait(Body body) : body_(std::move(body)) {}
+
+  void await_suspend(Task::Handle task) { suspend_until_done(task, &run); }
+  /// Runs the body; calls `done` on this PE once all its consequences are done.
+  void begin(std::function<void()> done) { EpochBase::begin(&run, std::move(done)); }
+
+ private:
+  static void run(EpochBase& of) { static_cast<EpochAwait&>(of).body_(); }
+  Body body_;
 };
 
 }  // namespace detail

@@ -19,49 +19,123 @@
 #pragma once
 
 #include "runtime/callback.hpp"
-#include "runtime/core/check.hpp"
 #include "runtime/messages/entry_traits.hpp"
 #include "runtime/scheduler/pe_action.hpp"
 #include "runtime/task.hpp"
 
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
 #include <tuple>
 #include <type_traits>
 #include <utility>
 
 namespace tess {
 
+namespace detail {
+
+/// What futures of all types have in common.
+class FutureBase {
+ public:
+  FutureBase() = default;
+  FutureBase(const FutureBase&) = delete;
+  FutureBase& operator=(const FutureBase&) = delete;
+
+  // For when_all and when_any.
+  void wait(Waiter& waiter);
+  void withdraw() {
+    if (slot_ != nullptr) slot_->waiting = nullptr;
+  }
+
+ protected:
+  /// What the table knows. The thread of the PE writes it until `id` is 0.
+  struct Slot {
+    bool given = false;
+    Waiter* waiting = nullptr;
+    std::atomic<std::uint64_t> id = 0;  // the number in the table; 0: no PE knows it
+  };
+  using SlotPointer = std::unique_ptr<Slot, void (*)(Slot*)>;
+  using MakeSlot = SlotPointer (*)();
+  explicit FutureBase(MakeSlot make) : make_(make) {}
+  ~FutureBase() { leave(); }
+
+  /// The place of a result.
+  struct Where {
+    PeId pe;
+    std::uint64_t id = 0;
+  };
+  [[nodiscard]] static Where where(std::span<const std::byte> name);
+  [[nodiscard]] static std::string describe(std::span<const std::byte> name);
+  /// The PE that sends a result there; the message to it counts.
+  [[nodiscard]] static Pe& sends_to(const Where& to);
+  /// The slot of a result that arrives; `waits_for` is for errors.
+  [[nodiscard]] static Slot& find(Pe& pe, std::uint64_t id, std::string_view value);
+  /// Its result has been written.
+  static void given(Pe& pe, Slot& slot);
+
+  [[nodiscard]] Where name() const;
+  [[nodiscard]] bool is_ready() const {
+    if (is_expected()) require_here();  // the result may come meanwhile: decided once
+    return slot_ != nullptr && slot_->given;
+  }
+  void start(Task::Handle task) {
+    own_.start(task, 1);
+    wait(own_);
+  }
+  void take_result(std::string_view value);
+  void take(FutureBase& other);
+  void replace(FutureBase& other);
+  [[nodiscard]] Slot& slot() const { return *slot_; }
+  [[nodiscard]] static std::string text_of(std::string_view value);
+
+ private:
+  [[nodiscard]] bool is_awaited() const { return slot_ != nullptr && slot_->waiting != nullptr; }
+  /// True if a PE knows it.
+  [[nodiscard]] bool is_expected() const {
+    return slot_ != nullptr && slot_->id.load(std::memory_order_acquire) != 0;
+  }
+  /// From here on a result finds it, on this PE.
+  void enter() const;
+  /// Another thread runs the PE that knows it.
+  void require_here() const;
+  void leave();
+
+  MakeSlot make_ = nullptr;
+  mutable Pe* pe_ = nullptr;  // that knows the slot, or knew it
+  mutable SlotPointer slot_{nullptr, nullptr};
+  bool moved_ = false;  // to another future
+  bool taken_ = false;  // a co_await has moved the value out
+  Waiter own_;
+};
+
+}  // namespace detail
+
 template <class T>
-class Future {
+class Future : public detail::FutureBase {
   using Value = detail::ValueOrNone<T>;
 
  public:
-  Future() {
+  Future() : FutureBase(&make_slot) {
     static_assert(std::is_default_constructible_v<Value>,
                   "the value of a future needs a default constructor: where it arrives it is made "
                   "empty and then read");
   }
-  Future(const Future&) = delete;
-  Future& operator=(const Future&) = delete;
   /// Not while a coroutine waits for it, and on its own PE only. The other can only be assigned to.
-  Future(Future&& other) noexcept { take(other); }
+  Future(Future&& other) noexcept : FutureBase(&make_slot) { take(other); }
   Future& operator=(Future&& other) noexcept {
-    if (this == &other) return *this;
-    TESS_CHECK(!is_awaited(), "a future is overwritten while a coroutine waits for it");
-    leave();
-    take(other);
+    replace(other);
     return *this;
   }
-  ~Future() { leave(); }
+  ~Future() = default;
 
   /// The target that receives the result.
   [[nodiscard]] Callback<T> callback() const {
-    TESS_CHECK(!moved_, "a future that was moved from has no callback: use the one it moved to");
-    enter();
-    return detail::make_target<Value>(kind_, to_bytes(std::tuple(pe_->id(), slot_->id.load())));
+    const Where to = name();
+    return detail::make_target<Value>(kind_, std::in_place, to.pe, to.id);
   }
 
   /// Awaits a variable where it is: g++ 12 would copy an operand that is a call, as futures[i].
@@ -74,43 +148,28 @@ class Future {
     };
     return InPlace{*this};
   }
-  [[nodiscard]] bool await_ready() const {
-    if (is_expected()) require_here();  // the result may come meanwhile: decided once
-    return slot_ != nullptr && slot_->value.has_value();
-  }
+  [[nodiscard]] bool await_ready() const { return is_ready(); }
   void await_suspend(Task::Handle task) {
-    own_.start(task, 1);
-    wait(own_);
-    suspend(task, [this] { return waits_for(); });
+    start(task);
+    detail::suspend_on(task, *this);
   }
   T await_resume() {
-    withdraw();
-    if constexpr (!std::is_void_v<T>) {
-      TESS_CHECK(!std::exchange(taken_, true), waits_for(),
-                 " is awaited again: the first co_await took its result, so keep that");
-      return std::move(*slot_->value);
+    if constexpr (std::is_void_v<T>) {
+      withdraw();
+    } else {
+      take_result(name_of_type<T>);
+      return std::move(static_cast<TypedSlot&>(slot()).value);
     }
   }
-
-  // For when_all and when_any.
-  void wait(detail::Waiter& waiter) {
-    TESS_CHECK(!moved_, "a future that was moved from is awaited: await the one it moved to");
-    TESS_CHECK(!is_awaited(), "two coroutines await one future");
-    enter();
-    slot_->waiting = &waiter;
-  }
-  void withdraw() {
-    if (slot_ != nullptr) slot_->waiting = nullptr;
-  }
-  [[nodiscard]] static std::string waits_for() { return text("a future of ", name_of_type<T>); }
+  [[nodiscard]] static std::string waits_for() { return text_of(name_of_type<T>); }
 
  private:
-  /// What the table knows. The thread of the PE writes it until `id` is 0.
-  struct Slot {
-    std::optional<Value> value;
-    detail::Waiter* waiting = nullptr;
-    std::atomic<std::uint64_t> id = 0;  // the number in the table; 0: no PE knows it
+  struct TypedSlot : Slot {
+    Value value{};
   };
+  static SlotPointer make_slot() {
+    return {new TypedSlot, [](Slot* slot) { delete static_cast<TypedSlot*>(slot); }};
+  }
   struct Result {
     std::uint64_t id = 0;
     Value value{};
@@ -121,72 +180,19 @@ class Future {
     }
   };
   static void give(const Callback<Value>& callback, Value&& value) {
-    const auto [pe, id] = from_bytes<std::tuple<PeId, std::uint64_t>>(callback.where());
-    Pe& here = current_pe();
-    if (pe.value >= here.n_pes()) (void)here.require_future(0);
-    here.completion().sent(here.context().epoch);
-    detail::send_system<&Future::arrives>(here, pe, Result{id, std::move(value)});
+    const Where to = where(callback.where());
+    detail::send_system<&Future::arrives>(sends_to(to), to.pe, Result{to.id, std::move(value)});
   }
   static void arrives(Pe& pe, Result&& result) {
-    auto* slot = static_cast<Slot*>(pe.require_future(result.id));
-    TESS_CHECK(!slot->value, waits_for(), " was given two results: it takes one");
-    slot->value = std::move(result.value);
-    detail::Waiter* const waiter = slot->waiting;
-    pe.leave_future(result.id);
-    slot->id.store(0, std::memory_order_release);
-    if (waiter != nullptr) waiter->wake();
-    pe.completion().processed(pe.context().epoch);
+    Slot& slot = find(pe, result.id, name_of_type<T>);
+    static_cast<TypedSlot&>(slot).value = std::move(result.value);
+    given(pe, slot);
   }
   static std::string describe(const Callback<Value>& callback) {
-    const auto [pe, id] = from_bytes<std::tuple<PeId, std::uint64_t>>(callback.where());
-    return text("future ", id, " of ", pe);
+    return FutureBase::describe(callback.where());
   }
   static inline const typename Callback<Value>::Kind kind_{naming::name_of<&Future::give>(),
                                                            &Future::give, &Future::describe};
-
-  [[nodiscard]] bool is_awaited() const { return slot_ != nullptr && slot_->waiting != nullptr; }
-  /// True if a PE knows it.
-  [[nodiscard]] bool is_expected() const {
-    return slot_ != nullptr && slot_->id.load(std::memory_order_acquire) != 0;
-  }
-  /// From here on a result finds it, on this PE.
-  void enter() const {
-    if (slot_ == nullptr) slot_ = std::make_unique<Slot>();
-    if (!is_expected()) {
-      pe_ = &current_pe();
-      slot_->id = pe_->enter_future(slot_.get());
-    }
-    require_here();
-  }
-  /// Another thread runs the PE that knows it.
-  void require_here() const {
-    TESS_CHECK(pe_ == &current_pe(), "a future of ", pe_->id(), " is used on ", current_pe().id(),
-               ": its element has migrated before its result was there; make it a local variable "
-               "of the coroutine that awaits it, or migrate after that");
-  }
-  void leave() {
-    if (!is_expected()) return;
-    if (const Pe* const here = detail::current_pe_or_null(); here != pe_) [[unlikely]] {
-      if (here == nullptr || here->stopped()) return;  // the run is over
-      require_here();
-    }
-    pe_->leave_future(slot_->id);
-  }
-  void take(Future& other) {
-    TESS_CHECK(!other.is_awaited(), "a future is moved while a coroutine waits for it");
-    TESS_CHECK(!other.is_expected() || &current_pe() == other.pe_, "a future of ", other.pe_->id(),
-               " is moved on ", current_pe().id(), ": send its callback() instead");
-    moved_ = std::exchange(other.moved_, true);
-    pe_ = other.pe_;
-    slot_ = std::move(other.slot_);
-    taken_ = other.taken_;
-  }
-
-  mutable Pe* pe_ = nullptr;  // that knows the slot, or knew it
-  mutable std::unique_ptr<Slot> slot_;
-  bool moved_ = false;  // to another future
-  bool taken_ = false;  // a co_await has moved the value out
-  detail::Waiter own_;
 };
 
 namespace detail {

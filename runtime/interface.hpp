@@ -200,13 +200,8 @@ class InterfaceProxy {
         [[unlikely]]
       meter->sent({collection_, IndexHash<Index>()(index_)},
                   detail::payload_bytes(message->arguments));
-    pe.completion().sent(message->epoch);
-    if (detail::Collection* array = detail::find_collection(pe, message->collection);
-        array != nullptr) {
-      static_cast<detail::ArrayOf<Index>*>(array)->post(message);
-    } else {
+    if (!detail::ArrayOf<Index>::post_on(pe, message))
       pe.send_here(message);  // it waits until the array is known here
-    }
   }
   template <auto F, class... Value>
   void give(Value&&... value) const {

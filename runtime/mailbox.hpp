@@ -88,7 +88,7 @@ class Mailbox {
     void await_suspend(Task::Handle task) {
       own_.start(task, 1);
       wait(own_);
-      suspend(task, [this] { return waits_for(); });
+      detail::suspend_on(task, *this);
     }
     Value await_resume() { return std::move(*value_); }
 

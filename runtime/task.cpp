@@ -90,6 +90,10 @@ void suspend(Task::Handle task, std::function<detail::WaitReason()> waits_for) {
   account.pe->suspended().insert(account.entry);
 }
 
+void detail::suspend_at(Task::Handle task, void* awaitable, WaitReason (*waits_for)(void*)) {
+  suspend(task, [awaitable, waits_for] { return waits_for(awaitable); });
+}
+
 void resume_later(Task::Handle task) {
   Pe& pe = *task.promise().account.pe;
   using Held = detail::Message<detail::Resumption>;

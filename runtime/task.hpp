@@ -186,6 +186,14 @@ class [[nodiscard]] TaskOf : public detail::AnyTask {
 void suspend(Task::Handle task, std::function<detail::WaitReason()> waits_for);
 
 namespace detail {
+/// The same for an awaitable with waits_for(), which stays where it is.
+void suspend_at(Task::Handle task, void* awaitable, WaitReason (*waits_for)(void*));
+template <class Awaitable>
+void suspend_on(Task::Handle task, Awaitable& awaitable) {
+  suspend_at(task, &awaitable,
+             [](void* of) -> WaitReason { return static_cast<Awaitable*>(of)->waits_for(); });
+}
+
 /// A suspended coroutine, and the number of results that it waits for before it continues: one; all
 /// of several (when_all); or the first of several (when_any), where the later ones have no effect.
 class Waiter {

@@ -55,7 +55,7 @@ class [[nodiscard]] Sleep {
   void await_suspend(Task::Handle task) {
     own_.start(task, 1);
     wait(own_);
-    suspend(task, [this] { return waits_for(); });
+    detail::suspend_on(task, *this);
   }
   void await_resume() const {}
 
@@ -248,16 +248,7 @@ class [[nodiscard]] WhenAll {
   }
   void await_suspend(Task::Handle task) {
     waiter_.start(task, parts_.size());
-    suspend(task, [this] {
-      WaitReason all("");
-      parts_.each([&all](auto& part) {
-        if (part.await_ready()) return;
-        const WaitReason one = part.waits_for();
-        add_reason(all, " and ", one);
-        all.asked.insert(all.asked.end(), one.asked.begin(), one.asked.end());
-      });
-      return all;
-    });
+    suspend_on(task, *this);
     // An epoch begins now: what it does may be what another part waits for.
     parts_.each([this](auto& part) {
       if (part.await_ready()) {
@@ -278,6 +269,16 @@ class [[nodiscard]] WhenAll {
     }
     return parts_.all();
   }
+  [[nodiscard]] WaitReason waits_for() {
+    WaitReason all("");
+    parts_.each([&all](auto& part) {
+      if (part.await_ready()) return;
+      const WaitReason one = part.waits_for();
+      add_reason(all, " and ", one);
+      all.asked.insert(all.asked.end(), one.asked.begin(), one.asked.end());
+    });
+    return all;
+  }
 
  private:
   P parts_;
@@ -292,11 +293,7 @@ class [[nodiscard]] WhenAny {
   void await_suspend(Task::Handle task) {
     waits_ = true;
     waiter_.start(task, 1);
-    suspend(task, [this] {
-      WaitReason all("");  // it needs no one of the elements that it asks
-      parts_.each([&all](auto& part) { add_reason(all, " or ", part.waits_for()); });
-      return all;
-    });
+    suspend_on(task, *this);
     bool ready = false;  // by the body of an epoch that began before it
     parts_.each([&](auto& part) {
       if (ready) return;
@@ -319,6 +316,11 @@ class [[nodiscard]] WhenAny {
       withdraw(parts_, [used](const auto& part) { return &part != used; });
     }
     return parts_.first(which);
+  }
+  [[nodiscard]] WaitReason waits_for() {
+    WaitReason all("");  // it needs no one of the elements that it asks
+    parts_.each([&all](auto& part) { add_reason(all, " or ", part.waits_for()); });
+    return all;
   }
 
  private:

@@ -3,8 +3,8 @@
 #pragma once
 
 #include "runtime/core/ids.hpp"
-#include "runtime/core/registry.hpp"
 #include "runtime/core/serialize.hpp"
+#include "runtime/messages/envelope.hpp"
 #include "runtime/messages/read_all.hpp"
 
 #include <boost/smart_ptr/intrusive_ptr.hpp>
@@ -20,12 +20,13 @@ using SharedCall = boost::intrusive_ptr<const BroadcastCall>;
 class TessElement;
 using Element = TessElement;
 class Pe;
-struct Action;
 
-struct BroadcastKind : Registered {
+/// Also the action of the call in reports: no message has it.
+struct BroadcastKind : Action {
   using Unpack = SharedCall (*)(Reader&);
-  BroadcastKind(naming::Name name, Unpack unpack_) : Registered(name), unpack(unpack_) {}
-  Unpack unpack;
+  BroadcastKind(naming::Name name, Unpack unpack_)
+      : Action(name, nullptr, nullptr, nullptr, nullptr, Traffic::user), unpack_call(unpack_) {}
+  Unpack unpack_call;
 };
 
 class BroadcastCall
@@ -37,7 +38,7 @@ class BroadcastCall
   virtual ~BroadcastCall() = default;
 
   [[nodiscard]] virtual const BroadcastKind& kind() const = 0;
-  [[nodiscard]] virtual const Action& action() const = 0;
+  [[nodiscard]] const Action& action() const { return kind(); }
   [[nodiscard]] virtual std::int64_t priority() const = 0;
   /// Calls the entry method; the arguments are kept for the next element.
   virtual void invoke(Element& element) const = 0;
@@ -70,7 +71,7 @@ struct NumberedCall {
 
  private:
   void read(Reader& ar, const BroadcastKind& kind) {
-    call = unpack_framed(ar, kind.name(), kind.unpack);
+    call = unpack_framed(ar, kind.name(), kind.unpack_call);
   }
 };
 

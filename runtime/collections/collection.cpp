@@ -400,10 +400,10 @@ void ElementScope::force_migration() {
 }
 
 Collection& add_collection(Pe& pe, const CollectionKind& kind, CollectionId id, const Range& range,
-                           std::shared_ptr<const IndexMap> map) {
+                           const std::shared_ptr<const IndexMap>& map) {
   auto made = kind.make(pe, id, range);
   Collection& collection = *made;
-  collection.set_index_map(std::move(map));
+  collection.set_index_map(map);
   pe.add(std::move(made));
   return collection;
 }

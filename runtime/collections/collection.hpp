@@ -373,7 +373,7 @@ class ElementScope {
 }
 /// Makes the part on this PE of a collection of this kind; its initial elements are still to come.
 Collection& add_collection(Pe& pe, const CollectionKind& kind, CollectionId id, const Range& range,
-                           std::shared_ptr<const IndexMap> map);
+                           const std::shared_ptr<const IndexMap>& map);
 /// Ends the job: `use`, as "a broadcast of f to", has an empty proxy.
 [[noreturn]] void refuse_empty_proxy(std::string_view use);
 /// Ends the job with the reason why find_collection() is null: the proxy is empty, or `what` has

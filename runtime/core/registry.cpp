@@ -7,7 +7,7 @@
 
 namespace tess::detail {
 
-Registered::Registered(naming::Name name) : name_(name) {
+Registered::Registered(std::string_view text, const std::type_info* tag) : name_{text, tag} {
   Registry::all().push_back(this);
 }
 

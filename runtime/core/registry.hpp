@@ -15,7 +15,7 @@ namespace tess::detail {
 /// An object with a name and, once the registry is sealed, a number. It must have static storage.
 class Registered {
  public:
-  explicit Registered(naming::Name name);
+  explicit Registered(naming::Name name) : Registered(name.text, name.tag) {}
   Registered(const Registered&) = delete;
   Registered& operator=(const Registered&) = delete;
 
@@ -27,6 +27,8 @@ class Registered {
 
  private:
   friend class Registry;
+  /// The members of the name, which are passed in registers.
+  Registered(std::string_view text, const std::type_info* tag);
   naming::Name name_;
   std::uint32_t id_ = 0;
 };

@@ -91,6 +91,14 @@ class Writer {
 
   template <class... T>
   void operator()(const T&... values) {
+    if constexpr (sizeof...(T) > 1 && (Bitwise<T> && ...)) {
+      constexpr std::size_t n = (sizeof(T) + ...);
+      if (n <= static_cast<std::size_t>(end_ - at_)) [[likely]] {
+        n_bytes_ += n;
+        ((std::memcpy(at_, &values, sizeof values), at_ += sizeof values), ...);
+        return;
+      }
+    }
     (put(values), ...);
   }
   void bytes(const void* data, std::size_t n) {
@@ -179,7 +187,14 @@ class Reader {
 
   template <class... T>
   void operator()(T&... values) {
-    (get(values), ...);
+    if constexpr (sizeof...(T) > 1 && (Bitwise<T> && ...)) {
+      need((sizeof(T) + ...));
+      const std::byte* from = in_.data() + at_;
+      ((std::memcpy(&values, from, sizeof values), from += sizeof values), ...);
+      at_ += (sizeof(T) + ...);
+    } else {
+      (get(values), ...);
+    }
   }
   template <class T>
   [[nodiscard]] T take() {
@@ -251,7 +266,12 @@ class Reader {
   template <class Each>
   std::size_t n_items() {
     const auto n = take<std::uint64_t>();
-    if (n > remaining() && written_bytes(std::remove_const_t<Each>{}) != 0) refuse_length(n);
+    if (n > remaining()) [[unlikely]] {
+      if constexpr (serialization::always_takes_bytes<std::remove_const_t<Each>>())
+        refuse_length(n);
+      else if (written_bytes(std::remove_const_t<Each>{}) != 0)
+        refuse_length(n);
+    }
     return n;
   }
   std::size_t checked_length(std::uint64_t n, std::size_t least_bytes_each) const {
@@ -330,19 +350,19 @@ void Writer::put(const T& value) {
   } else if constexpr (IsArray<T>::value || std::is_array_v<T>) {
     for (const auto& item : value) put(item);
   } else if constexpr (TupleLike<T>) {
-    std::apply([this](const auto&... item) { (this->put(item), ...); }, value);
+    std::apply([this](const auto&... item) { (*this)(item...); }, value);
   } else if constexpr (std::is_empty_v<T>) {
     // Nothing to write.
   } else {
     static_assert(std::is_aggregate_v<T>,
                   "a type that is no aggregate and no known container needs `template <class Ar> "
                   "void serialize(Ar& ar)`");
-    detail::for_each_field(value, [this](const auto& field) { this->put(field); });
+    std::apply([this](const auto&... field) { (*this)(field...); }, detail::fields_of(value));
   }
 }
 
 template <class T>
-void Writer::put_items(const T& container) {
+[[gnu::noinline]] void Writer::put_items(const T& container) {
   using namespace serialization;
   using Each = typename T::value_type;
   static_assert(!holds_more<T>(),
@@ -398,19 +418,19 @@ void Reader::get(T& value) {
   } else if constexpr (IsArray<T>::value || std::is_array_v<T>) {
     for (auto& item : value) get(item);
   } else if constexpr (TupleLike<T>) {
-    std::apply([this](auto&... item) { (this->get(item), ...); }, value);
+    std::apply([this](auto&... item) { (*this)(item...); }, value);
   } else if constexpr (std::is_empty_v<T>) {
     // Nothing to read.
   } else if constexpr (!std::is_pointer_v<T>) {  // pointers are refused where they are written
     static_assert(std::is_aggregate_v<T>,
                   "a type that is no aggregate and no known container needs `template <class Ar> "
                   "void serialize(Ar& ar)`");
-    detail::for_each_field(value, [this](auto& field) { this->get(field); });
+    std::apply([this](auto&... field) { (*this)(field...); }, detail::fields_of(value));
   }
 }
 
 template <class T>
-void Reader::get_items(T& container) {
+[[gnu::noinline]] void Reader::get_items(T& container) {
   using namespace serialization;
   using Each = typename T::value_type;
   if constexpr (Resizable<T> && Bitwise<Each> && StaysInPlace<T>) {
@@ -425,7 +445,11 @@ void Reader::get_items(T& container) {
     container.resize(length(sizeof(Each)));
     bytes(container.data(), container.size() * sizeof(Each));
   } else if constexpr (Resizable<T>) {
-    container.resize(n_items<Each>());
+    const std::size_t n = n_items<Each>();
+    if constexpr (IsVector<T>::value)
+      T(n).swap(container);  // less code than resize(), which may move elements
+    else
+      container.resize(n);
     for (auto& item : container) get(item);
   } else {
     container.clear();

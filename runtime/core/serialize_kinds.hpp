@@ -173,6 +173,24 @@ consteval bool is_bitwise() {
   }
 }
 
+/// True if a value takes a byte or more, whatever it holds; false if only its serialize() knows.
+template <class T>
+consteval bool always_takes_bytes() {
+  if constexpr (is_bitwise<T>()) {
+    return true;
+  } else if constexpr (HasSerialize<T> || HasFreeSerialize<T> || std::is_empty_v<T>) {
+    return false;
+  } else if constexpr (std::is_aggregate_v<T> && !IsArray<T>::value && !Resizable<T> &&
+                       !Growable<T>) {
+    return []<class... Fields>(std::type_identity<std::tuple<Fields&...>>) {
+      return (always_takes_bytes<Fields>() || ...);
+    }(std::type_identity<detail::FieldTypes<T>>());
+  } else {
+    return Resizable<T> || Growable<T> || IsOptional<T>::value || IsVariant<T>::value ||
+           IsUnique<T>::value;
+  }
+}
+
 /// Ends the job if an object is written as one of its base class: what derives would be lost.
 void check_whole(const std::type_info& object, const std::type_info& written_as);
 

@@ -39,6 +39,11 @@ template <class T>
 [[nodiscard]] consteval Name name_of() {
   return {type<T>(), &typeid(TypeTag<T>)};
 }
+/// The same for a class with virtual functions: it has a type_info already.
+template <class T>
+[[nodiscard]] consteval Name name_of_polymorphic() {
+  return {type<T>(), &typeid(T)};
+}
 template <auto Value>
 [[nodiscard]] consteval Name name_of() {
   return {value<Value>(), &typeid(ValueTag<Value>)};

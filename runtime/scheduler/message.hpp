@@ -18,9 +18,8 @@ struct Message final : Envelope {
     return message;
   }
   static void destroy(Envelope* envelope) {
-    auto* message = static_cast<Message*>(envelope);
-    message->~Message();
-    release_block(message, sizeof(Message));
+    static_cast<Message*>(envelope)->~Message();
+    release_message(envelope);
   }
   static void pack(Envelope& envelope, Writer& ar) { ar(static_cast<Message&>(envelope).payload); }
   static Envelope* unpack(Pe& pe, Reader& ar) {

@@ -109,7 +109,7 @@ struct TypedMessage : ElementMessage<typename C::Index> {
   static void destroy(Envelope* envelope) {
     auto* message = static_cast<Derived*>(envelope);
     message->~Derived();
-    release_block(message, sizeof(Derived));
+    release_message(envelope);
   }
   static void pack(Envelope& envelope, Writer& ar) {
     auto& message = static_cast<Derived&>(envelope);
@@ -209,11 +209,11 @@ class CallOfAll final : public BroadcastCall {
  public:
   using Arguments = typename EntryTraits<F>::Arguments;
 
+  CallOfAll() = default;
   CallOfAll(const Head& head, Arguments arguments)
       : head_(head), arguments_(std::move(arguments)) {}
 
   [[nodiscard]] const BroadcastKind& kind() const override { return kind_; }
-  [[nodiscard]] const Action& action() const override { return action_; }
   [[nodiscard]] std::int64_t priority() const override { return priority_by<C, F>(head_); }
   void invoke(Element& element) const override {
     std::apply([&](const auto&... argument) { (void)(called<C>(head_, element).*F)(argument...); },
@@ -223,15 +223,15 @@ class CallOfAll final : public BroadcastCall {
 
  private:
   static SharedCall unpack(Reader& ar) {
-    const Head head = ar.take<Head>();
-    return SharedCall(new CallOfAll(head, ar.take<Arguments>()));
+    auto* const call = new CallOfAll;
+    SharedCall made(call);
+    ar(call->head_, call->arguments_);
+    return made;
   }
-  static inline const BroadcastKind kind_{naming::name_of<CallOfAll>(), &unpack};
-  static inline const Action action_{
-      naming::name_of<CallOfAll*>(), nullptr, nullptr, nullptr, nullptr, Traffic::user};
+  static inline const BroadcastKind kind_{naming::name_of_polymorphic<CallOfAll>(), &unpack};
 
-  [[no_unique_address]] Head head_;
-  Arguments arguments_;
+  [[no_unique_address]] Head head_{};
+  Arguments arguments_{};
 };
 
 }  // namespace tess::detail

@@ -96,7 +96,7 @@ class MergedPartial final : public Partial {
     auto target = ar.take<Callback<Result>>();
     return std::make_unique<MergedPartial>(std::move(op), std::move(value), std::move(target));
   }
-  static inline const PartialKind kind_{naming::name_of<MergedPartial>(), &unpack};
+  static inline const PartialKind kind_{naming::name_of_polymorphic<MergedPartial>(), &unpack};
 
   [[no_unique_address]] Op op_;
   T value_;
@@ -139,7 +139,7 @@ class OrderedPartial final : public Partial {
     auto target = ar.take<Callback<Result>>();
     return std::make_unique<OrderedPartial>(std::move(op), std::move(values), std::move(target));
   }
-  static inline const PartialKind kind_{naming::name_of<OrderedPartial>(), &unpack};
+  static inline const PartialKind kind_{naming::name_of_polymorphic<OrderedPartial>(), &unpack};
 
   [[no_unique_address]] Op op_;
   std::vector<std::pair<Index, T>> values_;
