@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # The tests, in three tiers; each installs what is missing first.
-#   tests/run.sh        12 minutes: format; one build with the address and undefined-behaviour sanitizers and all checks; the tests
+#   tests/run.sh        12 minutes: format; one build with all checks and sanitizers of memory and integers; the tests
 #                       that find nearly all planted bugs (tests/mutants/README.md), with ten seeds; misuse that must not compile
 #   tests/run.sh full   an hour, before a release: every test in release, tidy, each file alone, the core with the thread sanitizer
 #   tests/run.sh soak   a night: every test with both sanitizers, long seeds, the planted bugs
@@ -78,8 +78,8 @@ elif [[ $tier == full ]]; then
   needed tsan_build build tsan quick_tests
   TESS_SEEDS=3 stage tsan_tests test_preset tsan -L quick -L runtime
 else
-  needed build build check all
-  stage tests test_preset check
+  needed build build asan all
+  stage tests test_preset asan
   needed tsan_build build tsan all
   stage tsan_tests test_preset tsan
   soak_seeds() { build release protocol_fuzz collide_fuzz && build/release/bin/protocol_fuzz --seeds 0:10000 && build/release/bin/collide_fuzz --seeds 0:10000; }
