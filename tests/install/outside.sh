@@ -64,7 +64,13 @@ else
   failed=1
 fi
 
-[[ " ${components[*]} " != *" runtime "* ]] || prints "20 seeds pass" "$scratch/build/uses_testing"
+if [[ " ${components[*]} " == *" runtime "* ]]; then
+  prints "20 seeds pass" "$scratch/build/uses_testing"
+  # The live view is there for the program that links it, and for no other one.
+  for program in runtime:0 live_view:1; do
+    prints "${program#*:}" bash -c "'$scratch/build/uses_${program%:*}' --help | grep -c -- ' --monitor '"
+  done
+fi
 
 # Chares of the program, which migrate between the transfers of a coupling.
 if [[ " ${components[*]} " == *" runtime "* && " ${components[*]} " == *" m2m "* ]]; then
