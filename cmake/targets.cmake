@@ -39,8 +39,8 @@ endif()
 if(TESS_SANITIZE)
   # Null pointers and sizes of objects the address sanitizer sees by itself; alignment x86 forgives.
   # The three together double the time to compile.
-  target_compile_options(tess_options INTERFACE
-    -fsanitize=${TESS_SANITIZE} -fno-sanitize=null,object-size,alignment -fno-omit-frame-pointer)
+  set(sanitize -fsanitize=${TESS_SANITIZE} -fno-sanitize=null,object-size,alignment -fno-omit-frame-pointer)
+  target_compile_options(tess_options INTERFACE "$<$<OR:$<NOT:$<BOOL:${TESS_SANITIZE_CORE_ONLY}>>,$<BOOL:$<TARGET_PROPERTY:TESS_CORE>>>:${sanitize}>")
   target_link_options(tess_options INTERFACE -fsanitize=${TESS_SANITIZE})
 endif()
 
