@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # The tests, in three tiers; each installs what is missing first.
 #   tests/run.sh        12 minutes: format; one build with all checks, the core with the address and undefined-behaviour sanitizers; the
-#                       tests that find nearly all planted bugs (tests/mutants/README.md), with ten seeds; misuse that must not compile
+#                       tests that find planted bugs (tests/mutants.py), with ten seeds; misuse that must not compile
 #   tests/run.sh full   an hour, before a release: every test in release, tidy, each file alone, the core with the thread sanitizer
 #   tests/run.sh soak   a night: every test with both sanitizers, long seeds, the planted bugs
 set -euo pipefail
