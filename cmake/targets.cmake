@@ -39,8 +39,8 @@ endif()
 if(TESS_SANITIZE)
   # Null pointers and sizes of objects the address sanitizer sees by itself; alignment x86 forgives.
   # The three together double the time to compile.
-  set(sanitize -fsanitize=${TESS_SANITIZE} -fno-sanitize=null,object-size,alignment -fno-omit-frame-pointer)
-  target_compile_options(tess_options INTERFACE "$<$<OR:$<NOT:$<BOOL:${TESS_SANITIZE_CORE_ONLY}>>,$<BOOL:$<TARGET_PROPERTY:TESS_CORE>>>:${sanitize}>")
+  target_compile_options(tess_options INTERFACE
+    -fsanitize=${TESS_SANITIZE} -fno-sanitize=null,object-size,alignment -fno-omit-frame-pointer)
   target_link_options(tess_options INTERFACE -fsanitize=${TESS_SANITIZE})
 endif()
 
@@ -124,23 +124,24 @@ function(tess_not_timed)
   endforeach()
 endfunction()
 
-# tess_quick(TEST PROGRAM…): the quick tier (tests/run.sh) builds these programs and runs this test, with sanitizers.
-function(tess_quick test)
-  set_property(TEST ${test} APPEND PROPERTY LABELS quick)
-  if(NOT TARGET quick_tests)
-    add_custom_target(quick_tests)
+# tess_tier(TIER TEST PROGRAM…): the tier (quick, sanitized) of tests/run.sh builds these programs and runs this test.
+function(tess_tier tier test)
+  set_property(TEST ${test} APPEND PROPERTY LABELS ${tier})
+  if(NOT TARGET ${tier}_tests)
+    add_custom_target(${tier}_tests)
   endif()
   if(ARGN)
-    add_dependencies(quick_tests ${ARGN})
+    add_dependencies(${tier}_tests ${ARGN})
   endif()
 endfunction()
 
-# tess_test(NAME [TSAN] [QUICK] SOURCES … DEPENDS … LABELS …): a Catch2 program in bin/, run by ctest.
+# tess_test(NAME [TSAN] [QUICK] [SANITIZED] SOURCES … DEPENDS … LABELS …): a Catch2 program in bin/, run by ctest.
 # A test case tagged [.] is hidden: it runs by hand only (soak, seeds, benchmarks).
 # TSAN: it has threads, so the thread sanitizer has something to say about it; not about cases tagged [one_thread].
-# QUICK: it belongs to the quick tier, since planted bugs are found by it (tests/mutants/).
+# QUICK: it belongs to the quick tier, since planted bugs are found by it (tests/mutants/); SANITIZED: there it runs once more with
+# the address and undefined-behaviour sanitizers, in which everything takes twice as long to compile and four times to run.
 function(tess_test name)
-  cmake_parse_arguments(ARG "TSAN;QUICK" "" "SOURCES;DEPENDS;LABELS" ${ARGN})
+  cmake_parse_arguments(ARG "TSAN;QUICK;SANITIZED" "" "SOURCES;DEPENDS;LABELS" ${ARGN})
   if(TESS_SANITIZE STREQUAL "thread" AND NOT ARG_TSAN)
     return()
   endif()
@@ -153,6 +154,9 @@ function(tess_test name)
   add_test(NAME ${name} COMMAND ${name} ${cases})
   set_tests_properties(${name} PROPERTIES LABELS "${ARG_LABELS}" TIMEOUT 600)
   if(ARG_QUICK)
-    tess_quick(${name} ${name})
+    tess_tier(quick ${name} ${name})
+  endif()
+  if(ARG_SANITIZED)
+    tess_tier(sanitized ${name} ${name})
   endif()
 endfunction()

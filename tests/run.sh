@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # The tests, in three tiers; each installs what is missing first.
-#   tests/run.sh        12 minutes: format; one build with all checks, the core with the address and undefined-behaviour sanitizers; the
-#                       tests that find planted bugs (tests/mutants.py), with ten seeds; misuse that must not compile
+#   tests/run.sh        12 minutes: format; one build with all checks; the tests that find planted bugs (tests/mutants.py), with ten
+#                       seeds; misuse that must not compile; three programs with the address and undefined-behaviour sanitizers
 #   tests/run.sh full   an hour, before a release: every test in release, tidy, each file alone, the core with the thread sanitizer
 #   tests/run.sh soak   a night: every test with both sanitizers, long seeds, the planted bugs
 set -euo pipefail
@@ -10,7 +10,7 @@ cd "$(dirname "$0")/.."
 tier=${1:-quick}
 case $tier in
   # Each stage, and its seconds on two cores.
-  quick) plan=(packages 40 lint 15 build 420 tests 150 files_alone 40) ;;
+  quick) plan=(packages 40 lint 15 build 400 tests 110 sanitized_build 80 sanitized_tests 15 files_alone 30) ;;
   full) plan=(packages 40 lint 15 build 800 files_alone 400 tidy 170 tests 950 tsan_build 250 tsan_tests 300) ;;
   soak) plan=(packages 40 build 800 tests 3600 tsan_build 600 tsan_tests 1200 seeds 3600 planted_bugs 3600) ;;
   *) echo "usage: tests/run.sh [full | soak]" >&2; exit 2 ;;
@@ -68,7 +68,9 @@ if [[ $tier == quick ]]; then
   stage lint bash cmake/lint.sh
   needed build build check quick_tests
   stage tests test_preset check -L quick
-  stage files_alone bash cmake/files_alone.sh check 40
+  needed sanitized_build build asan sanitized_tests
+  stage sanitized_tests test_preset asan -L sanitized
+  stage files_alone bash cmake/files_alone.sh check 30
 elif [[ $tier == full ]]; then
   stage lint bash cmake/lint.sh
   needed build build release all
