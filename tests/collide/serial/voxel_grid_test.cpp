@@ -70,8 +70,10 @@ TEST_CASE("the conversions of all widths agree bit for bit, also on invalid boxe
       REQUIRE(cells == plain);
     }
     if (valid) {
-      const tess::collide::CellRange cells = grid.cells_of({{box[0], box[1], box[2]}, {box[3], box[4], box[5]}});
-      REQUIRE(cells == tess::collide::CellRange{{plain[0], plain[1], plain[2]}, {plain[3], plain[4], plain[5]}});
+      const tess::collide::CellRange cells =
+          grid.cells_of({{box[0], box[1], box[2]}, {box[3], box[4], box[5]}});
+      REQUIRE(cells == tess::collide::CellRange{{plain[0], plain[1], plain[2]},
+                                                {plain[3], plain[4], plain[5]}});
     }
   }
   REQUIRE(n_good > 1000);
