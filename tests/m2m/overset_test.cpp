@@ -7,7 +7,6 @@
 #include "m2m/kuhn.hpp"
 #include "runtime/testing.hpp"
 #include "tests/support/catch.hpp"
-#include "tests/support/n_seeds.hpp"
 
 #include <algorithm>
 #include <cmath>
