@@ -182,7 +182,11 @@ TEST_CASE("200 random overset assemblies: holes, fringes, donors and orphans as 
           "[m2m][overset]") {
   std::mt19937 random(17);
   Counts n;
+#ifdef TESS_CHECKS_ALL
+  constexpr int n_assemblies = 50;
+#else
   constexpr int n_assemblies = 200;
+#endif
   for (std::uint64_t k = 0; k < n_assemblies; ++k) {
     INFO("assembly " << k);
     const auto [problem, surface] = random_problem(random);
