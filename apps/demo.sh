@@ -32,7 +32,7 @@ done
 
 if [[ -z $built ]]; then
   cd "$root"
-  echo "demo: packages, one program and four transfers: about two minutes on two cores"
+  echo "demo: packages, one program and four transfers: about four minutes on two cores"
   bash cmake/setup.sh --only build
   # Meshes and plots are wanted later: their packages come while the compiler runs.
   mkdir -p build
