@@ -262,10 +262,14 @@ class ElementProxy {
     return true;
   }
   void post_message(Pe& pe, detail::ElementMessage<Index>* message) const {
-    if (detail::ArrayOf<Index>::post_on(pe, message)) [[likely]]
-      return;
-    check_not_empty();
-    pe.send_here(message);  // it waits until the array is known here
+    pe.completion().sent(message->epoch);
+    if (detail::Collection* collection = detail::find_collection(pe, collection_);
+        collection != nullptr) [[likely]] {
+      static_cast<detail::Array<C>*>(collection)->post(message);
+    } else {
+      check_not_empty();
+      pe.send_here(message);  // it waits until the array is known here
+    }
   }
   template <class... Args>
   void construct(PeId where, detail::Demand demand, Args&&... args) const {

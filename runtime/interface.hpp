@@ -200,8 +200,13 @@ class InterfaceProxy {
         [[unlikely]]
       meter->sent({collection_, IndexHash<Index>()(index_)},
                   detail::payload_bytes(message->arguments));
-    if (!detail::ArrayOf<Index>::post_on(pe, message))
+    pe.completion().sent(message->epoch);
+    if (detail::Collection* array = detail::find_collection(pe, message->collection);
+        array != nullptr) {
+      static_cast<detail::ArrayOf<Index>*>(array)->post(message);
+    } else {
       pe.send_here(message);  // it waits until the array is known here
+    }
   }
   template <auto F, class... Value>
   void give(Value&&... value) const {

@@ -124,10 +124,7 @@ class ArrayOf : public Collection {
     return record->state() == IndexState::here ? pe_.id() : record->pe();
   }
 
-  /// A user's message is sent on this PE. Returns false, and leaves the message, if the PE does not
-  /// know the array.
-  [[nodiscard]] static bool post_on(Pe& pe, CallMessage* message);
-  /// The same where the PE knows it.
+  /// A user's message is sent from here.
   void post(CallMessage* message) {
     Record* record = table_.find(message->index);
     if (record != nullptr && record->state() == IndexState::here) [[likely]] {

@@ -22,16 +22,6 @@ void ArrayOf<Index>::run_message(Pe& pe, Envelope* envelope) {
 }
 
 template <class Index>
-bool ArrayOf<Index>::post_on(Pe& pe, CallMessage* message) {
-  pe.completion().sent(message->epoch);
-  Collection* const array = find_collection(pe, message->collection);
-  if (array == nullptr) [[unlikely]]
-    return false;
-  static_cast<ArrayOf*>(array)->post(message);
-  return true;
-}
-
-template <class Index>
 std::uint64_t ArrayOf<Index>::drop_message(Pe& pe, Envelope& envelope) {
   const auto& action = static_cast<const ElementAction<Index>&>(*envelope.action);
   if (action.undelivered != nullptr)
