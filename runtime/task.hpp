@@ -186,7 +186,7 @@ class [[nodiscard]] TaskOf : public detail::AnyTask {
 void suspend(Task::Handle task, std::function<detail::WaitReason()> waits_for);
 
 namespace detail {
-/// The same for an awaitable with waits_for(), which stays where it is.
+/// Does the same for an awaitable with waits_for(), which stays where it is.
 void suspend_at(Task::Handle task, void* awaitable, WaitReason (*waits_for)(void*));
 template <class Awaitable>
 void suspend_on(Task::Handle task, Awaitable& awaitable) {

@@ -39,7 +39,7 @@ template <class T>
 [[nodiscard]] consteval Name name_of() {
   return {type<T>(), &typeid(TypeTag<T>)};
 }
-/// The same for a class with virtual functions: it has a type_info already.
+/// Returns the same for a class with virtual functions: it has a type_info already.
 template <class T>
 [[nodiscard]] consteval Name name_of_polymorphic() {
   return {type<T>(), &typeid(T)};
