@@ -1,48 +1,21 @@
 #include "runtime/command_line.hpp"
 
+#include "runtime/base/option_words.hpp"
 #include "runtime/command_line/option_state.hpp"
 #include "runtime/core/check.hpp"
 #include "runtime/machine/mpi.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <limits>
 #include <span>
 
 namespace tess {
 
+using detail::looks_like_option, detail::name_in;
 using detail::OptionAccess, detail::OptionState, detail::Texts, detail::refuse;
 
 namespace {
-
 constexpr int unlimited = std::numeric_limits<int>::max();
-
-/// "-x" and "--x", not "-", "-1" and "-.5".
-bool looks_like_option(const std::string& word) {
-  return word.size() > 1 && word[0] == '-' && word[1] != '.' &&
-         std::isdigit(static_cast<unsigned char>(word[1])) == 0;
-}
-
-/// "--steps" of "--steps=5".
-std::string name_in(const std::string& word) {
-  return word.substr(0, word.find('='));
-}
-
-/// How many letters to insert, remove, replace, or swap with their neighbour make b of a.
-std::size_t distance(std::string_view a, std::string_view b) {
-  std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
-  for (std::size_t i = 0; i <= a.size(); ++i)
-    for (std::size_t j = 0; j <= b.size(); ++j) {
-      d[i][j] = i + j;
-      if (i == 0 || j == 0) continue;
-      d[i][j] = std::min(
-          {d[i - 1][j] + 1, d[i][j - 1] + 1, d[i - 1][j - 1] + (a[i - 1] == b[j - 1] ? 0U : 1U)});
-      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
-        d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
-    }
-  return d[a.size()][b.size()];
-}
-
 }  // namespace
 
 Option& Option::between(std::int64_t least, std::int64_t most) {
@@ -139,6 +112,7 @@ bool CommandLine::parse(int argc, char** argv, const std::string& footer) {
   }
   for (const auto& option : options_)
     if (option->is_given) option->assign();
+  detail::words_are_read();
   return true;
 }
 
@@ -204,19 +178,7 @@ detail::OptionState* CommandLine::find(std::string_view name) const {
 
 detail::OptionState& CommandLine::known(const std::string& name) const {
   if (OptionState* const option = find(name)) return *option;
-  std::string nearest;
-  std::size_t bound = std::min<std::size_t>(3, name.size() / 4 + 1);
-  for (const std::string& line : detail::split(help(), '\n')) {  // with the options of the footer
-    if (!line.starts_with("  -")) continue;
-    for (const std::string& one : detail::split(line.substr(2, line.find(' ', 2) - 2), ',')) {
-      const std::size_t n = distance(name, one);
-      if (n < bound) nearest = one;
-      bound = std::min(bound, n);
-    }
-  }
-  if (nearest.empty()) refuse("unknown option " + name);
-  fail(ErrorCode::bad_argument, "unknown option ", name, " (did you mean ", nearest,
-       "? --help lists the options)");
+  detail::refuse_unknown_option(name, help());  // with the options of the footer
 }
 
 bool CommandLine::is_given(const std::string& name) const {

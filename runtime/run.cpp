@@ -1,5 +1,6 @@
 #include "runtime/run.hpp"
 
+#include "runtime/base/option_words.hpp"
 #include "runtime/collections/elements/element.hpp"
 #include "runtime/core/check.hpp"
 #include "runtime/core/number.hpp"
@@ -16,6 +17,7 @@
 #include <cstring>
 #include <new>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -124,6 +126,28 @@ bool is_in_job() {
   return under_mpirun() || program_owns_mpi();
 }
 
+/// The words of the command line that guarded() gave to its body, until they are read.
+struct Unread {
+  const int* argc = nullptr;
+  char** argv = nullptr;
+};
+Unread unread;
+
+/// True if a word that no parser has read asks for the help, which is then printed. Throws for any
+/// other option: it would be ignored.
+bool asks_for_help() {
+  if (unread.argc == nullptr) return false;
+  for (int i = 1; i < *unread.argc; ++i) {
+    const std::string_view word = unread.argv[i];
+    if (!detail::looks_like_option(word)) continue;
+    if (word != "--help" && word != "-h")
+      detail::refuse_unknown_option(detail::name_in(word), options_help());
+    if (speaks_for_job()) print("usage: ", unread.argv[0], " [options]\n", options_help());
+    return true;
+  }
+  return false;
+}
+
 /// The number that a process that refuses its input passes to Machine::agree(); others pass one
 /// that the fingerprint of the program gives.
 constexpr std::uint64_t refused = 0x7265667573656421U;
@@ -131,6 +155,7 @@ constexpr std::uint64_t refused = 0x7265667573656421U;
 /// Handles an Error before the run. If all processes have one, process 0 prints it. Otherwise the
 /// other processes wait at the start of the run, and this process ends the job.
 void refuse(Setup& setup, int& argc, char** argv, const Error& error) {
+  unread = {};
   if (!setup.machine && is_in_job()) {
     try {
       setup.machine = make_mpi_machine(argc, argv, {.pes_per_process = 0, .refuses = true});
@@ -265,6 +290,7 @@ Setup take_options(int& argc, char** argv) {
 
 int run_on(Setup& setup, std::function<void()> main) {
   refuse_inside_run();
+  if (asks_for_help()) return 0;
   TESS_CHECK(!setup.started, "run() with a Setup that has run: make one for each run");
   detail::Runtime runtime(*setup.machine, setup.options,
                           {&detail::element_text, &detail::element_key, &detail::element_state},
@@ -294,7 +320,10 @@ int guarded(int& argc, char** argv, const std::function<int(Setup&)>& body) {
   Setup setup;
   try {
     setup = take_options(argc, argv);
-    return printed(argv[0], body(setup));
+    unread = {&argc, argv};
+    const int code = body(setup);
+    unread = {};
+    return printed(argv[0], code);
   } catch (const Error& error) {
     refuse(setup, argc, argv, error);
     return 2;
@@ -305,13 +334,16 @@ int guarded(int& argc, char** argv, const std::function<int(Setup&)>& body) {
 }
 
 namespace detail {
-bool asks_for_help(int argc, char** argv) {
-  if (argc <= 1) return false;
-  const std::string_view option = argv[1];
-  if (option != "--help" && option != "-h")
-    fail(ErrorCode::bad_argument, "unknown option ", option, " (--help lists them)");
-  if (speaks_for_job()) print("usage: ", argv[0], " [options]\n", options_help());
-  return true;
+void words_are_read() {
+  unread = {};
+}
+
+void refuse_words(int argc, char** argv) {
+  for (const std::string_view word : std::span(argv, static_cast<std::size_t>(argc)).subspan(1)) {
+    if (looks_like_option(word)) return;  // asks_for_help() has its say
+    fail(ErrorCode::bad_argument, "argument '", word,
+         "' is one too many; leave it out (--help lists the options)");
+  }
 }
 }  // namespace detail
 

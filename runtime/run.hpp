@@ -64,9 +64,10 @@ int guarded(int& argc, char** argv, const std::function<int(Setup&)>& body);
 int guarded(const char* program, const std::function<int()>& body);
 
 namespace detail {
-/// For a program without options: prints the help if it was requested and returns true. Any other
-/// option is an Error.
-bool asks_for_help(int argc, char** argv);
+/// The words that guarded() gave to its body have been read.
+void words_are_read();
+/// For a program without words of its own: throws for those that are left.
+void refuse_words(int argc, char** argv);
 template <class Main>
 std::function<void()> as_message(Main main) {
   if constexpr (std::is_same_v<std::invoke_result_t<Main>, Task>) {
@@ -89,7 +90,7 @@ int run(Setup& setup, Main main) {
 template <class Main>
 int run(int argc, char** argv, Main main) {
   return guarded(argc, argv, [&](Setup& setup) {
-    if (detail::asks_for_help(argc, argv)) return 0;
+    detail::refuse_words(argc, argv);
     return run_on(setup, detail::as_message(std::move(main)));
   });
 }

@@ -38,6 +38,8 @@ int start(tess::Setup& setup, int argc, char** argv) {
 }  // namespace task_bench
 
 int main(int argc, char** argv) {
-  return tess::guarded(argc, argv,
-                       [&](tess::Setup& setup) { return task_bench::start(setup, argc, argv); });
+  return tess::guarded(argc, argv, [&](tess::Setup& setup) {
+    // They are written as Task Bench does.
+    return task_bench::start(setup, std::exchange(argc, 1), argv);
+  });
 }

@@ -1,6 +1,7 @@
 // Step 7: load balancing. 16 workers, of which the first 4 have five times the work. They are all
 // on one PE at first; a balancer that measures them spreads them.
 #include "runtime/balance.hpp"
+#include "runtime/command_line.hpp"
 #include "runtime/runtime.hpp"
 
 constexpr int n_phases = 20;
@@ -32,8 +33,8 @@ class Worker : public tess::Chare<Worker> {
   tess::Callback<void> done_;
 };
 
-tess::Task measure() {
-  for (const char* strategy : {"none", "greedy_refine"}) {
+tess::Task measure(std::string chosen) {
+  for (const std::string& strategy : {std::string("none"), chosen}) {
     const auto workers = tess::create<Worker>(tess::range(16));
     const auto balancer = tess::start_balancing(workers, {.strategy = strategy});
     const tess::Time begin = tess::now();
@@ -45,5 +46,11 @@ tess::Task measure() {
 }
 
 int main(int argc, char** argv) {
-  return tess::run(argc, argv, measure);
+  return tess::guarded(argc, argv, [&](tess::Setup& setup) {
+    std::string strategy = "greedy_refine";
+    tess::CommandLine line("Balances 16 workers, of which 4 have five times the work.");
+    line.option("--strategy NAME", strategy, "where elements go");
+    if (!line.parse(argc, argv)) return 0;
+    return tess::run(setup, [=] { return measure(strategy); });
+  });
 }

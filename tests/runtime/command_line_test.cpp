@@ -234,6 +234,26 @@ TEST_CASE("an unknown option is refused with the nearest one, of the program or 
     CHECK(refusal(word) == "unknown option " + word + " (--help lists the options)");
 }
 
+TEST_CASE("a run refuses options that its program has not read", "[runtime][command_line]") {
+  // The exit code of a program without a parser, and whether it ran.
+  const auto result = [](std::vector<std::string> words, bool reads_them) {
+    std::vector<char*> arguments{const_cast<char*>("mine")};
+    for (std::string& word : words) arguments.push_back(word.data());
+    int argc = static_cast<int>(arguments.size());
+    bool ran = false;
+    const int code = tess::guarded(argc, arguments.data(), [&](tess::Setup& setup) {
+      if (reads_them) argc = 1;
+      return tess::run(setup, [&ran] { ran = true; });
+    });
+    return std::pair(code, ran);
+  };
+  CHECK(result({"--pse", "2"}, false) == std::pair(2, false));
+  CHECK(result({"file", "--pes", "1", "-x"}, false) == std::pair(2, false));
+  CHECK(result({"--help"}, false) == std::pair(0, false));
+  CHECK(result({"--steps", "2"}, true) == std::pair(0, true));
+  CHECK(result({"file", "-2", "--pes", "1"}, false) == std::pair(0, true));
+}
+
 TEST_CASE("a value that is needed may begin with '-', but is no option",
           "[runtime][command_line]") {
   double edge = 0;
