@@ -43,7 +43,34 @@ void check_register() {
   });
 }
 
+class Clerk : public tess::Chare<Clerk> {
+ public:
+  tess::TaskOf<int> answer() {  // after an hour of virtual time, which takes no real time
+    co_await tess::sleep(std::chrono::hours(1));
+    co_return 42;
+  }
+};
+
+/// The clerk is in time for a limit of 61 minutes with every seed, and late for one of 59.
+void check_deadline(std::chrono::minutes limit, bool is_in_time) {
+  tess::test::for_seeds(0, 100, [=](std::uint64_t seed) {
+    bool came = false;
+    const tess::test::Machine machine{.pes = 4, .seed = seed};
+    machine.run([&]() -> tess::Task {
+      const auto clerks = tess::create<Clerk>(tess::range(4));
+      try {
+        came = co_await clerks[{2}].ask<&Clerk::answer>().within(limit) == 42;
+      } catch (const tess::Error&) {  // no answer within the limit
+      }
+    });
+    tess::test::expect(came == is_in_time, limit.count(), " minutes: ", came);
+  });
+}
+
 int main() {
+  check_deadline(std::chrono::minutes(61), true);
+  check_deadline(std::chrono::minutes(59), false);
+  tess::print("check_deadline passes\n");
   check_register<&Register::write_newest>();
   tess::print("write_newest passes\n");
   try {

@@ -180,6 +180,9 @@ class Machine {
   /// Why run() returned although stop() was not called; empty if nothing was left to do.
   [[nodiscard]] virtual std::string gave_up() const { return {}; }
 
+  /// What its times leave out, after run(); empty if nothing that matters.
+  [[nodiscard]] virtual std::string left_out() const { return {}; }
+
   /// One line that describes the machine and the placement of its PEs.
   [[nodiscard]] virtual std::string describe() const = 0;
 

@@ -28,10 +28,11 @@ struct Value {
   [[nodiscard]] Time time() const {
     std::string_view unit;
     const double value = number(&unit);
-    const double factor = unit.empty() || unit == "ns" ? 1
+    const double factor = unit == "ns"                 ? 1
                           : unit == "us"               ? 1e3
                           : unit == "ms"               ? 1e6
                           : unit == "s"                ? 1e9
+                          : unit.empty() && value == 0 ? 0
                                                        : -1;
     constexpr double most = 1e15;
     if (factor < 0 || value < 0 || value * factor > most)
@@ -42,7 +43,7 @@ struct Value {
   [[nodiscard]] double rate() const {
     std::string_view unit;
     const double value = number(&unit);
-    const double factor = unit == "GB/s" ? 1e9 : unit == "MB/s" ? 1e6 : unit.empty() ? 1 : -1;
+    const double factor = unit == "GB/s" ? 1e9 : unit == "MB/s" ? 1e6 : -1;
     const double rate = value * factor;
     if (!(rate >= 1 && rate <= 1e18))
       fail(ErrorCode::bad_argument, place, ": ", text,
@@ -150,6 +151,7 @@ void read_simulated_file(const std::string& path, SimulatedOptions& options) {
 
 SimulatedOptions parse_simulated(const std::string& given) {
   SimulatedOptions options;
+  options.watches_cost = true;
   std::size_t at = 0;
   while (at < given.size()) {
     const std::size_t comma = std::min(given.find(',', at), given.size());

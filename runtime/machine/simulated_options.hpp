@@ -40,6 +40,7 @@ struct SimulatedOptions {
   std::optional<Time> process_overhead;
   double process_copy = 0;
   std::optional<Time> cost;           ///< cost of one message; absent: measured
+  bool watches_cost = false;          ///< report the work that a cost leaves out, as --sim does
   std::optional<std::uint64_t> seed;  ///< if present: adversarial order
   /// After each message; absent: 0, or drawn from the seed.
   std::optional<double> migration_chance;

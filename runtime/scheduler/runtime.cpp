@@ -143,6 +143,8 @@ int Runtime::run() {
       if (!machine_.agree(one.value)) return refuse_job(one.differs);
   machine_.run(*this);
   write_traces();
+  if (const std::string left_out = machine_.left_out(); !left_out.empty())
+    error_line("tessera: " + left_out);
   if (left_) return exit_code_;
   // Only a simulated machine can notice that no message is under way any more.
   const std::string gave_up = machine_.gave_up();

@@ -1,6 +1,7 @@
 // The simulated machine: its options, and that a seed repeats a run exactly.
 #include "runtime/machine/simulated.hpp"
 
+#include "runtime/core/cpu_clock.hpp"
 #include "runtime/runtime.hpp"
 #include "tests/support/catch.hpp"
 
@@ -50,6 +51,29 @@ TEST_CASE("a seed repeats a run exactly, and another is another run", "[runtime]
   CHECK(first != walk("pes=3,cost=100ns,seed=8"));
 }
 
+TEST_CASE("work that a fixed cost leaves out is reported with its sum", "[runtime][simulated]") {
+  const auto report = [](const std::string& keys, bool charges) {
+    tess::Setup setup;
+    setup.machine = tess::make_simulated_machine(tess::parse_simulated(keys));
+    std::string said;
+    setup.options.report = [&said](const std::string& line) { said += line + "\n"; };
+    const auto work = [charges] {
+      if (charges && tess::charge(std::chrono::milliseconds(30))) return;
+      const std::int64_t begin = tess::detail::thread_cpu_nanoseconds();
+      while (tess::detail::thread_cpu_nanoseconds() - begin < 30'000'000) {
+      }
+    };
+    CHECK(tess::run(setup, work) == 0);
+    return said;
+  };
+  const std::string left_out = report("pes=2,cost=100ns", false);
+  CAPTURE(left_out);
+  CHECK(left_out.starts_with("tessera: --sim cost=100ns: virtual time leaves out 0.0"));
+  CHECK(left_out.find(" s that entry methods ran, and has ") != std::string::npos);
+  CHECK(report("pes=2,cost=100ns", true).empty());
+  CHECK(report("pes=2", false).empty());
+}
+
 TEST_CASE("the options of the simulated machine are read with their units",
           "[runtime][simulated]") {
   const auto options = tess::parse_simulated(
@@ -76,9 +100,9 @@ TEST_CASE("the PEs of a process begin with its first one", "[runtime][simulated]
 }
 
 TEST_CASE("a bad option of the simulated machine is named", "[runtime][simulated]") {
-  for (const char* bad :
-       {"pes=0", "pes=many", "pes", "latency=-1us", "latency=1h", "bandwidth=0", "bandwidth=1e-9",
-        "migrate=2", "colour=red", "pes=5,per-process=2", "seed=0.5", "pes=2x"}) {
+  for (const char* bad : {"pes=0", "pes=many", "pes", "latency=-1us", "latency=1h", "bandwidth=0",
+                          "bandwidth=1e-9", "bandwidth=1e9", "latency=2", "cost=100", "migrate=2",
+                          "colour=red", "pes=5,per-process=2", "seed=0.5", "pes=2x"}) {
     INFO(bad);
     CHECK_THROWS_AS(tess::parse_simulated(bad), tess::Error);
   }
@@ -237,10 +261,11 @@ TEST_CASE("overheads and the wire between processes are virtual time, exactly",
     std::int64_t message;  // ns from one PE to the other; its bytes take none
   };
   for (const Case& c :
-       {Case{"pes=2,latency=1us,bandwidth=1e15", 1000},
-        Case{"pes=2,latency=1us,bandwidth=1e15,overhead=40ns", 1080},
-        Case{"pes=2,per-process=1,latency=1us,process-latency=3us,bandwidth=1e15", 3000},
-        Case{"pes=2,per-process=1,latency=1us,process-latency=3us,bandwidth=1e15,overhead=40ns,"
+       {Case{"pes=2,latency=1us,bandwidth=1000000GB/s", 1000},
+        Case{"pes=2,latency=1us,bandwidth=1000000GB/s,overhead=40ns", 1080},
+        Case{"pes=2,per-process=1,latency=1us,process-latency=3us,bandwidth=1000000GB/s", 3000},
+        Case{"pes=2,per-process=1,latency=1us,process-latency=3us,bandwidth=1000000GB/"
+             "s,overhead=40ns,"
              "process-overhead=500ns",
              4000}}) {
     CAPTURE(c.machine);

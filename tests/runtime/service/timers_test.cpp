@@ -94,6 +94,22 @@ TEST_CASE("a timer on the simulated machine runs at its virtual time", "[runtime
   CHECK(times == std::vector<std::int64_t>{0, 2'000'000, 3'000'000, 5'000'000});
 }
 
+TEST_CASE("a timer is exact in any order of messages", "[runtime][timers]") {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    tess::SimulatedOptions options;
+    options.n_pes = 3;
+    options.cost = 0ns;
+    options.seed = seed;
+    std::vector<tess::Time> times;
+    run_on(tess::make_simulated_machine(options), [&times] {
+      const tess::Time begin = tess::now();
+      for (const auto delay : {5ms, 1ms})
+        tess::after(delay, [&times, begin] { times.push_back(tess::now() - begin); });
+    });
+    CHECK(times == std::vector<tess::Time>{1ms, 5ms});
+  }
+}
+
 TEST_CASE("a target gets its value after the delay", "[runtime][timers]") {
   std::int64_t at = 0;
   const Ending ending = simulate([&]() -> tess::Task {
@@ -261,4 +277,13 @@ TEST_CASE("a signal during a simulated run gets its census", "[runtime][signals]
   });
   CHECK(ending.exit_code == 128 + SIGINT);
   CHECK(ending.report.find("SIGINT ends the run; 1 wait:\n  PE 0: ") != std::string::npos);
+}
+
+TEST_CASE("a request for a report between two runs does not end the program",
+          "[runtime][signals][threads]") {
+  const DefaultAction action(SIGUSR1);
+  for (int i = 0; i < 2; ++i) {
+    CHECK(on_threads([] {}).exit_code == 0);
+    CHECK(::raise(SIGUSR1) == 0);
+  }
 }
