@@ -5,11 +5,26 @@
 #include "runtime/report/pe_watch.hpp"
 #include "runtime/scheduler/pe_action.hpp"
 
+#include <cstdint>
 #include <cstdlib>
+#include <pthread.h>
 
 namespace tess {
 namespace detail {
 namespace {
+
+/// The lowest address of this thread's stack to which calls may go, and 256 KiB above its end: the
+/// room for what a task calls. 0 if the system does not say.
+std::uintptr_t lowest_call() {
+  constexpr std::size_t room_bytes = std::size_t{256} << 10U;
+  pthread_attr_t attributes;
+  void* end = nullptr;
+  std::size_t n_bytes = 0;
+  if (pthread_getattr_np(pthread_self(), &attributes) != 0) return 0;
+  const bool known = pthread_attr_getstack(&attributes, &end, &n_bytes) == 0;
+  pthread_attr_destroy(&attributes);
+  return known ? reinterpret_cast<std::uintptr_t>(end) + room_bytes : 0;
+}
 
 /// A coroutine handle in the queue of its own PE, which it never leaves.
 struct Resumption {
@@ -47,6 +62,13 @@ void run_resumption(Pe& /*pe*/, Resumption&& resumption) {
 }
 
 }  // namespace
+
+void refuse_deep_calls() {
+  thread_local const std::uintptr_t lowest = lowest_call();
+  TESS_CHECK(reinterpret_cast<std::uintptr_t>(__builtin_frame_address(0)) >= lowest,
+             "tasks call tasks so deep that the stack of this PE ends: call the next one after a "
+             "co_await, or in a loop, or send it to an element (ulimit -s gives more)");
+}
 
 void TaskAccount::belongs_to(const Element& element) {
   context.element = const_cast<Element*>(&element);

@@ -38,6 +38,10 @@ struct TaskAccount {
 
 class TaskPromise;
 
+/// Ends the job when the stack of this thread is nearly used up: a coroutine runs on it up to its
+/// first wait, and so do those that it calls.
+void refuse_deep_calls();
+
 /// The handle of a coroutine of any type of task.
 struct TaskHandle : std::coroutine_handle<TaskPromise> {
   TaskHandle() = default;
@@ -54,7 +58,10 @@ struct TaskHandle : std::coroutine_handle<TaskPromise> {
 class TaskPromise {
  public:
   /// Frames are allocated from the pool of the PE.
-  static void* operator new(std::size_t n_bytes) { return allocate_block(current_pe(), n_bytes); }
+  static void* operator new(std::size_t n_bytes) {
+    refuse_deep_calls();
+    return allocate_block(current_pe(), n_bytes);
+  }
   static void operator delete(void* frame, std::size_t n_bytes) { release_block(frame, n_bytes); }
 
   TaskAccount account;

@@ -38,7 +38,8 @@ Trial::Trial(std::uint64_t seed, std::int32_t n_pes, On machine, std::int32_t n_
 Ending Trial::run_message(std::function<void()> main) {
   Ending ending;
   Setup setup;
-  setup.options.signals = false;  // a thread per run, which thousands of runs would start
+  // A thread per run, which thousands of simulated runs would start.
+  setup.options.signals = machine_ == On::job;
   if (machine_ == On::job) {
     setup.machine = make_job_machine(pes_of_process_);
     setup.options.seed = seed_;

@@ -50,8 +50,9 @@ Timekeeper::Timekeeper(std::mutex& mutex) : mutex_(mutex) {
 
 Timekeeper::~Timekeeper() {
   if (bell_of_signals.load() == &bell_) {
+    // Between two runs SIGUSR1 still asks for a report, and must not end the program.
     for (int signal = 1; signal < n_signals; ++signal)
-      if (is_taken(signal)) set_handler(signal, SIG_DFL);
+      if (signal != SIGUSR1 && is_taken(signal)) set_handler(signal, SIG_DFL);
     bell_of_signals.store(nullptr);
   }
   {

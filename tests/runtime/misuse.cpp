@@ -445,6 +445,9 @@ tess::Task use_member_after_end() {
   members.local().nothing();
 }
 
+tess::Task count_down(int n) {
+  if (n > 0) co_await count_down(n - 1);
+}
 tess::Task future_awaited_twice() {
   const auto all = tess::create<Block>(tess::range(3));
   tess::Future<std::string> news;
@@ -586,6 +589,7 @@ const std::map<std::string, std::function<void()>> misuses{
     {"empty_group", [] { tess::GroupProxy<Member>().broadcast<&Member::nothing>(); }},
     {"empty_group_local", [] { tess::GroupProxy<Member>().local().nothing(); }},
     {"future_awaited_twice", [] { const tess::Task task = future_awaited_twice(); }},
+    {"nested_tasks", [] { const tess::Task task = count_down(1'000'000); }},
     {"task_awaited_at_once", [] { const tess::Task task = task_awaited_at_once(); }},
     {"value_awaited_twice", [] { const tess::Task task = value_awaited_twice(); }},
     {"ask_awaited_twice", [] { const tess::Task task = ask_awaited_twice(); }},

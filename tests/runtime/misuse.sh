@@ -41,7 +41,7 @@ everywhere() {
   says processes "$@"
 }
 
-everywhere member_99 "there is no PE 99: the run has 2 PEs" "on PE 0"
+everywhere member_99 "^tessera: there is no PE 99: the run has 2 PEs" "on PE 0" "^  the check is .* at runtime/"
 here member_-1 "there is no PE -1"
 everywhere insert_on_77 "there is no PE 77"
 everywhere map_too_far "the map .*ToItsNumber puts Block\[2\] on PE 2, but the run has PEs 0 … 1: compute the PE from the number of PEs"
@@ -72,6 +72,7 @@ here empty_array_ends "destroy() of an empty proxy: assign what create() returne
 here empty_group "a broadcast of Member::nothing to an empty proxy"
 here empty_group_local "a use of an empty proxy: assign what create() returned to it first"
 everywhere future_awaited_twice "a future of .*string.* is awaited again: the first co_await took its result"
+here nested_tasks "tasks call tasks so deep that the stack of this PE ends"
 here task_awaited_at_once "two coroutines await one task"
 here value_awaited_twice "a task is awaited again: the first co_await took its result"
 everywhere ask_awaited_twice "the reply of Block\[1\].news is awaited again: the first co_await took it"
