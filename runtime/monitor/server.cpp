@@ -2,6 +2,7 @@
 
 #include "runtime/core/error.hpp"
 #include "runtime/core/number.hpp"
+#include "runtime/core/text.hpp"
 #include "runtime/monitor/page.hpp"
 
 #include <boost/asio/ip/address.hpp>
@@ -128,14 +129,16 @@ class Connection final : public Listener, public std::enable_shared_from_this<Co
       server_.source().ask_report();
       return reply(http::status::accepted, "the answer comes as an event\n");
     }
+    if (target.path != "/heat" && target.path != "/events")
+      return reply(http::status::not_found, "there are /, /events, /heat and /report\n");
+    if (!server_.has_room())
+      return reply(http::status::service_unavailable,
+                   text(most_listeners, " browsers listen already: close one\n"));
     if (target.path == "/heat") return watch(heat_of(target));
-    if (target.path == "/events") {
-      std::vector<Event> past = server_.source().past();
-      past.push_back({"now", "{}"});
-      server_.listens(weak_from_this());
-      return stream(past);
-    }
-    reply(http::status::not_found, "there are /, /events, /heat and /report\n");
+    std::vector<Event> past = server_.source().past();
+    past.push_back({"now", "{}"});
+    server_.listens(weak_from_this());
+    stream(past);
   }
 
   void reply(http::status status, std::string body,
@@ -248,8 +251,7 @@ void Server::accept() {
   acceptor_.async_accept([this](beast::error_code error, Tcp::socket socket) {
     if (error == asio::error::operation_aborted) return;
     if (error) return accept_later();
-    if (to_all_.size() + to_heat_.size() < most_listeners)
-      std::make_shared<Connection>(*this, std::move(socket))->read();
+    std::make_shared<Connection>(*this, std::move(socket))->read();
     accept();
   });
 }
@@ -283,6 +285,11 @@ void Server::publish(const HeatMapId& id, const Event& event) {
     if (watched != id) continue;
     if (const auto connection = listener.lock()) connection->send(message);
   }
+}
+
+bool Server::has_room() {
+  forget_gone();
+  return to_all_.size() + to_heat_.size() < most_listeners;
 }
 
 bool Server::has_listeners() const {

@@ -61,6 +61,8 @@ class Server {
   [[nodiscard]] std::vector<HeatMapId> watched() const;
 
   // For its connections.
+  /// False if as many browsers listen as the server takes.
+  [[nodiscard]] bool has_room();
   [[nodiscard]] const Source& source() const { return source_; }
   [[nodiscard]] const std::string& token() const { return token_; }
   void listens(std::weak_ptr<Listener> listener) { to_all_.push_back(std::move(listener)); }

@@ -45,6 +45,11 @@ class Browser {
     boost::system::error_code error;
     while (!error && text_.find("\r\n\r\n") == std::string::npos) read_more(error);
   }
+  /// True if it gets events, false if the server refuses.
+  bool listens() {
+    wait_for_headers();
+    return text_.starts_with("HTTP/1.1 200");
+  }
   /// The data of the next event of this kind.
   json next(const std::string& kind) {
     const std::string head = "event: " + kind + "\ndata: ";
@@ -299,6 +304,22 @@ TEST_CASE("browsers that do not read hold nothing up", "[runtime][monitor]") {
           for (int i = 0; i < 8; ++i) silent.push_back(std::make_unique<Browser>(port, "/events"));
           Browser reader(port, "/events");
           for (int i = 0; i < 20; ++i) CHECK(reader.next("frame")["pes"] == 2);
+        }) == 0);
+}
+
+TEST_CASE("64 browsers may listen at once, also if they ask at once", "[runtime][monitor]") {
+  CHECK(watched_run(machine_of(true), "", [](unsigned short port) {
+          std::vector<std::unique_ptr<Browser>> all;
+          for (int i = 0; i < 70; ++i) all.push_back(std::make_unique<Browser>(port, "/events"));
+          int n_listen = 0;
+          for (const auto& one : all) n_listen += one->listens() ? 1 : 0;
+          CHECK(n_listen == 64);
+          all.clear();
+          for (int i = 0; i < 100 && n_listen != 0; ++i) {  // there is room once they are gone
+            std::this_thread::sleep_for(10ms);
+            if (Browser(port, "/events").listens()) n_listen = 0;
+          }
+          CHECK(n_listen == 0);
         }) == 0);
 }
 
