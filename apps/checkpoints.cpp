@@ -81,8 +81,8 @@ std::int32_t Checkpoints::pause_after(std::int32_t step, std::int32_t last) {
   return length_ < last - step ? step + length_ : last;
 }
 
-bool Checkpoints::is_due(std::int32_t from, std::int32_t step, std::int32_t last) {
-  if (folder_.empty() || step >= last) return false;
+bool Checkpoints::is_due(std::int32_t from, std::int32_t step) {
+  if (folder_.empty()) return false;
   if (steps_ != 0) return step / steps_ > from / steps_;
   if (Clock::now() - written_ < period_) return false;
   written_ = Clock::now();

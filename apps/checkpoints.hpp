@@ -58,10 +58,10 @@ class Checkpoints {
   /// The step at which the program pauses next; `last` if it writes no checkpoint before.
   [[nodiscard]] std::int32_t pause_after(std::int32_t step, std::int32_t last);
   /// Writes a checkpoint if it is time for one: steps `from` + 1 to state.step have been done since
-  /// the last call. None is written after the last step.
+  /// the last call.
   template <class State>
   tess::Task save_if_due(const State& state, std::int32_t from, std::int32_t last) {
-    if (!is_due(from, state.step, last)) co_return;
+    if (!is_due(from, state.step)) co_return;
     const Saved<State> saved{state, last, problem_};
     const tess::CheckpointOptions how = described(state.step);
     co_await tess::checkpoint(folder_, saved, how);
@@ -85,7 +85,7 @@ class Checkpoints {
   void check_folders();
   void check_every();
   void take(Values saved, std::int32_t step, std::int32_t n_steps);
-  [[nodiscard]] bool is_due(std::int32_t from, std::int32_t step, std::int32_t last);
+  [[nodiscard]] bool is_due(std::int32_t from, std::int32_t step);
   [[nodiscard]] tess::CheckpointOptions described(std::int32_t step) const;
 
   std::string folder_, restart_, every_ = "100";

@@ -166,10 +166,15 @@ std::string restore_here(Pe& pe, const ReadQuestion& question) {
       const Buffer bytes = read_file(question.folder, file.sum);
       Reader ar(std::span<const std::byte>(bytes.data(), bytes.size()));
       for (auto n = ar.take<std::uint64_t>(); n > 0; --n) {
-        Collection& collection = *find_collection(pe, ar.take<CollectionId>());
-        collection.restore(ar);
+        const auto id = ar.take<CollectionId>();
+        Collection* const collection = find_collection(pe, id);
+        if (collection == nullptr)
+          fail(ErrorCode::bad_file, question.folder, "/", file.sum.name,
+               " has elements of a collection ", id.value,
+               ", which the file main does not list: restart from another checkpoint");
+        collection->restore(ar);
         Reader sections = ar.part(ar.take<std::uint64_t>());
-        if (sections.remaining() > sizeof(std::uint64_t)) collection.restore_sections(sections);
+        if (sections.remaining() > sizeof(std::uint64_t)) collection->restore_sections(sections);
       }
     }
   });
@@ -253,7 +258,11 @@ TaskOf<Chosen> choose(std::string folder, std::uint64_t number, const Listing& l
 /// Throws Error if this program cannot restore the checkpoint on this many PEs.
 void check_plan(const Chosen& chosen, const std::string& state_type, std::int32_t n_pes) {
   const std::int32_t n_saved = chosen.manifest.n_pes;
+  std::set<std::uint64_t> listed;
   for (const SavedCollection& saved : chosen.main.collections) {
+    if (!listed.insert(saved.id.value).second)
+      fail(ErrorCode::bad_file, chosen.folder, "/main lists the collection ", saved.id.value,
+           " twice: restart from another checkpoint");
     const CollectionKind* const kind = CollectionKind::find(saved.key);
     if (kind == nullptr)
       fail(ErrorCode::bad_file, chosen.folder, " has elements of the class ", saved.name,

@@ -139,6 +139,38 @@ TEST_CASE("a checkpoint with one flipped bit anywhere is refused by name",
   CHECK(restart_from(folder).step == 3);
 }
 
+TEST_CASE("collections that do not fit each other are refused, also if all sums are right",
+          "[runtime][checkpoint]") {
+  namespace detail = tess::detail;
+  // Checkpoint 3, whose file main is changed and whose sums are made again.
+  const auto restart_with = [](const auto& change) {
+    const tess::test::Scratch scratch;
+    const std::string folder = scratch.path("saved");
+    REQUIRE(write_on(3, folder) == 0);
+    const std::string path = detail::folder_of(folder, 3);
+    detail::Manifest manifest = detail::read_manifest(path);
+    const detail::Buffer bytes = detail::read_file(path, manifest.files.back());
+    auto main = tess::from_bytes<detail::MainPart>({bytes.data(), bytes.size()});
+    REQUIRE(main.collections.size() >= 2);
+    change(main);
+    fs::remove(path + "/main");
+    manifest.files.back() = detail::write_file(path, "main", tess::to_bytes(main));
+    fs::remove(path + "/manifest.json");
+    detail::write_manifest(path, detail::to_text(manifest, main));
+    return restart_from(folder);
+  };
+  const auto same = restart_with([](detail::MainPart& /*main*/) {});
+  CHECK(same.step == 3);
+  const auto other =
+      restart_with([](detail::MainPart& main) { main.collections[0].id.value += 64; });
+  CHECK(other.exit_code != 0);
+  CHECK(other.report.find("has elements of a collection") != std::string::npos);
+  const auto twice =
+      restart_with([](detail::MainPart& main) { main.collections[0].id = main.collections[1].id; });
+  CHECK(twice.exit_code != 0);
+  CHECK(twice.report.find("twice: restart from another checkpoint") != std::string::npos);
+}
+
 TEST_CASE("a checkpoint of another version is refused by name", "[runtime][checkpoint]") {
   refused(after([](const std::string& path) {
             std::string bytes = tess::test::slurp(path + "pe-1");

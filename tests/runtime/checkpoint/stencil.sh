@@ -47,6 +47,13 @@ same_result "threads, mpi, simulated, one PE"
 runs "${mpirun[@]}" -n 3 "$stencil" --steps 400 --pes 2 --restart "$folder" --json "$scratch/result.json"
 same_result "one more restart, on three ranks"
 
+# One that is due at the last step; nothing is left to do, or more.
+runs "$stencil" --size 48 --steps 180 --pes 2 --checkpoint "$scratch/due" --checkpoint-every 90
+runs "$stencil" --restart "$scratch/due" --pes 2
+says '^continues after step 180$'
+runs "$stencil" --restart "$scratch/due" --steps 400 --pes 3 --json "$scratch/result.json"
+same_result "after a checkpoint of the last step"
+
 # By time: a checkpoint at each pause.
 runs "$stencil" --size 48 --steps 20 --pes 2 --checkpoint "$scratch/timed" --checkpoint-every 0.000001s
 runs "$stencil" --restart "$scratch/timed" --steps 400 --pes 2 --json "$scratch/result.json"
