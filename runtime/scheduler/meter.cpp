@@ -39,14 +39,11 @@ void Meter::watch_leaves() {
 }
 
 std::uint64_t Meter::pass() {
-  const std::uint64_t at = now();
-  if (scope_.record != nullptr) {
-    const std::uint64_t spent = at - since_;
-    scope_.record->spend(scope_.action, spent);
-    if (spent > longest_ticks_) {
-      longest_ticks_ = spent;
-      longest_ = scope_;
-    }
+  const std::uint64_t at = now(), spent = at - since_;
+  if (scope_.record != nullptr) scope_.record->spend(scope_.action, spent);
+  if (spent > longest_ticks_) {  // also of what is no element's
+    longest_ticks_ = spent;
+    longest_ = scope_;
   }
   since_ = at;
   return at;
@@ -58,12 +55,12 @@ void Meter::sent(const ElementKey& to, std::uint64_t bytes) {
 
 void Meter::step_begins() {
   const std::uint64_t at = now();
-  step_began_ = at;
+  step_began_ = since_ = at;
   if (!virtual_ && at - last_seen_ > gap_ticks_) begin_quantum();
 }
 
 void Meter::step_ends() {
-  const std::uint64_t at = now();
+  const std::uint64_t at = pass();
   last_seen_ = at;
   if (at - quantum_began_ > quantum_ticks_) return quantum_passes(at);
   busy_ += at - step_began_;
@@ -77,22 +74,26 @@ void Meter::begin_quantum() {
   // The thread may be preempted when this call returns; that time belongs to no call.
   cpu_at_begin_ = thread_cpu_seconds();
   quantum_began_ = since_ = step_began_ = now();
+  busy_at_begin_ = busy_;
   longest_ = {};
   longest_ticks_ = 0;
 }
 
 void Meter::quantum_passes(std::uint64_t at) {
   busy_ += at - step_began_;
-  end_quantum(at);
+  end_quantum();
   begin_quantum();
 }
 
-void Meter::end_quantum(std::uint64_t at) {
-  const double stolen = seconds(at - quantum_began_) - (thread_cpu_seconds() - cpu_at_begin_);
-  if (!(stolen >= noise_seconds) || longest_.record == nullptr) return;
+/// What was stolen while it waited for messages is none of its busy time: so the CPU time is compared
+/// with the busy part of the quantum.
+void Meter::end_quantum() {
+  const double stolen = seconds(busy_ - busy_at_begin_) - (thread_cpu_seconds() - cpu_at_begin_);
+  if (!(stolen >= noise_seconds)) return;
+  busy_ -= std::min(ticks(stolen), busy_ - busy_at_begin_);
+  if (longest_.record == nullptr) return;
   const std::uint64_t back = std::min(ticks(stolen), longest_ticks_);
   LoadRecord& record = *longest_.record;
-  busy_ -= std::min(back, busy_);
   record.ticks -= std::min(back, record.ticks);
   if (record.of_pe != nullptr) *record.of_pe -= std::min(back, *record.of_pe);
   for (LoadRecord::Entry& entry : record.entries)

@@ -5,9 +5,9 @@
 // Scopes nest (a constructor inside a handler); time counts for the innermost scope. It is read
 // from the cycle counter, which continues while the kernel runs another thread. So after each call
 // that ends a millisecond or more after the last time (a quantum) the PE's thread reads its CPU
-// time. The excess of the counter was stolen by other threads and is subtracted from the longest
-// call of the quantum, since a preempted call is long. On the simulated machine the meter reads the virtual clock, from which no time is
-// stolen.
+// time. What its steps took beyond that was stolen by other threads and is no busy time; it is also
+// subtracted from the longest call of the quantum, since a preempted call is long. On the simulated
+// machine the meter reads the virtual clock, from which no time is stolen.
 //
 //   step_begins  [ enter … [ enter … leave ] … leave ]*  step_ends   idle …
 #pragma once
@@ -121,7 +121,7 @@ class Meter {
   std::uint64_t pass();
   void ring(std::uint64_t at);
   void begin_quantum();
-  void end_quantum(std::uint64_t at);
+  void end_quantum();
   void quantum_passes(std::uint64_t at);
 
   Machine& machine_;
@@ -137,7 +137,7 @@ class Meter {
 
   // The quantum: its start, the CPU time at its start, and its longest call.
   const std::uint64_t quantum_ticks_, gap_ticks_;
-  std::uint64_t quantum_began_ = 0;
+  std::uint64_t quantum_began_ = 0, busy_at_begin_ = 0;
   double cpu_at_begin_ = std::numeric_limits<double>::quiet_NaN();  // until the first begins
   std::uint64_t last_seen_ = 0;
   Scope longest_;

@@ -76,6 +76,22 @@ TEST_CASE("stolen time is taken back from each call of a long step, and from no 
   CHECK(meter.seconds(meter.busy()) < 60e-3);
 }
 
+TEST_CASE("time that was stolen outside of calls is no busy time, and taken back from no call",
+          "[runtime][meter]") {
+  const auto machine = make_threads_machine(1);
+  Meter meter(*machine, PeId{0});
+  LoadRecord works;
+  meter.step_begins();
+  const Meter::Scope outer = meter.enter({&works, nullptr});
+  work(3e-3);
+  meter.leave(outer);
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));  // the runtime is preempted
+  meter.step_ends();
+  CHECK(meter.seconds(works.ticks) > 2e-3);
+  CHECK(meter.seconds(meter.busy()) > 2e-3);
+  CHECK(meter.seconds(meter.busy()) < 30e-3);
+}
+
 TEST_CASE("the innermost scope has the time", "[runtime][meter]") {
   const auto machine = machine_without_costs();
   Meter meter(*machine, PeId{0});
