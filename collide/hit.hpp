@@ -16,7 +16,7 @@ namespace tess::collide {
 enum class OwnerId : std::uint64_t {};
 /// The number of an object at its owner.
 enum class LocalId : std::uint32_t {};
-/// The model that an object belongs to. Pairs within a model are tested only on request.
+/// The model that an object belongs to. Pairs within a model can be left out.
 enum class ModelId : std::uint32_t {};
 
 /// The id of an object. Ids must be unique within a collision.
@@ -46,13 +46,13 @@ static_assert(std::is_trivially_copyable_v<Item> && sizeof(Item) == 64);
 static_assert(std::is_trivially_copyable_v<Hit> && sizeof(Hit) == 32);
 static_assert(std::has_unique_object_representations_v<Hit>);
 
-/// Whether pairs within one model are tested.
+/// Whether pairs within one model are tested: everywhere, unless a caller says `skip`.
 enum class WithinModel { skip, test };
 
 /// Decides which pairs are hits.
 struct PairRules {
   Touching touching = Touching::counts;
-  WithinModel within_model = WithinModel::skip;
+  WithinModel within_model = WithinModel::test;
 };
 
 /// Throws Error (bad_value) with the first item whose box is not valid.

@@ -62,9 +62,9 @@ struct PairStatistics {
 
 struct PairOptions {
   Touching touching = Touching::counts;
-  /// One model per object, for searches within one set only. Empty: all pairs are tested.
+  /// One model per object, for searches within one set only; needed to skip pairs within a model.
   std::span<const std::uint32_t> models = {};
-  WithinModel within_model = WithinModel::skip;  ///< without effect if there are no models
+  WithinModel within_model = WithinModel::test;
   double voxel_size = 0;  ///< positive and finite; or 0: chosen by expected cost
   PairMethod method = PairMethod::automatic;
   PairStatistics* statistics = nullptr;  ///< is filled

@@ -3,9 +3,9 @@
 #pragma once
 
 #include "collide/hit.hpp"
+#include "collide/owner.hpp"
 #include "runtime/runtime.hpp"
 
-#include <concepts>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -51,53 +51,15 @@ struct Report {
   }
 };
 
-/// The owner id of an element of an array of one to three dimensions, for report_to(). In three
-/// dimensions a coordinate has 21 bits; otherwise throws Error (bad_value).
-[[nodiscard]] inline OwnerId owner_of(const Index1& index) {
-  return static_cast<OwnerId>(static_cast<std::uint32_t>(index.x));
-}
-[[nodiscard]] inline OwnerId owner_of(const Index2& index) {
-  return static_cast<OwnerId>(std::uint64_t{static_cast<std::uint32_t>(index.x)} << 32 |
-                              static_cast<std::uint32_t>(index.y));
-}
-[[nodiscard]] OwnerId owner_of(const Index3& index);
-/// The owner id of a group's member.
-[[nodiscard]] inline OwnerId owner_of(PeId pe) {
-  return owner_of(Index1{pe.value});
-}
-
-/// An index that an owner id can hold.
-template <class Index>
-concept CanOwn =
-    std::same_as<Index, Index1> || std::same_as<Index, Index2> || std::same_as<Index, Index3>;
-
-namespace detail {
-inline void set_index(Index1& index, OwnerId owner) {
-  index.x = static_cast<std::int32_t>(static_cast<std::uint64_t>(owner));
-}
-inline void set_index(Index2& index, OwnerId owner) {
-  const auto bits = static_cast<std::uint64_t>(owner);
-  index = {static_cast<std::int32_t>(bits >> 32), static_cast<std::int32_t>(bits)};
-}
-void set_index(Index3& index, OwnerId owner);
-}  // namespace detail
-
-/// The index that owner_of() was given.
-template <class Index = Index1>
-[[nodiscard]] Index index_of(OwnerId owner) {
-  static_assert(CanOwn<Index>,
-                "an owner of objects is an element of an array of one to three dimensions");
-  Index index;
-  detail::set_index(index, owner);
-  return index;
-}
-
 namespace detail {
 template <class C, auto F>
 void call_owner(const Callback<Hits>& callback, Hits&& hits) {
   const ArrayProxy<C> owners(from_bytes<CollectionId>(callback.where()));
-  const auto owner = index_of<typename C::Index>(hits.owner);
-  owners[owner].template send<F>(std::move(hits));
+  try {
+    owners[index_of<typename C::Index>(hits.owner)].template send<F>(std::move(hits));
+  } catch (const Error& error) {
+    fail(error.code(), "report_to() ", plain_name(name_of_type<C>), ": ", error.what());
+  }
 }
 template <class C, auto F>
 inline const Callback<Hits>::Kind owner_kind{naming::name_of<&call_owner<C, F>>(),

@@ -71,6 +71,7 @@ void one_set(const Look& look, const std::vector<Object>& objects,
   }
   options.method = PairMethod::automatic;
   options.models = models;
+  options.within_model = WithinModel::skip;
   const auto find = [&](const PairOptions& o) { return pairs(all, o); };
   compare(search(options, outcome, find), across(expected, models), "pairs() with models", outcome);
   options.within_model = WithinModel::test;

@@ -77,7 +77,8 @@ tess::Task run_steps(const Case& given, Row& row) {
   tess::GroupProxy<Client> clients;
   const double size = given.voxel_size / std::sqrt(given.thinned);
   co_await tess::epoch([&] {
-    collider = make_collider({.voxel_size = {size, size, size}});
+    collider = make_collider({.voxel_size = {size, size, size},
+                              .rules = {.within_model = tess::collide::WithinModel::skip}});
     clients = tess::create_group<Client>(given);
   });
   tess::BalancerProxy balancer;

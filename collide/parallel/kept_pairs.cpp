@@ -23,7 +23,7 @@ bool are_far_too_many(const Summary& larger, const PairRules& rules, std::int32_
   const double n = static_cast<double>(larger.n);
   const double scale = n / static_cast<double>(larger.sample.size());
   double n_pairs = 0;
-  PairOptions options{.touching = rules.touching};
+  PairOptions options{.touching = rules.touching, .within_model = rules.within_model};
   if (rules.within_model == WithinModel::skip) options.models = larger.sample_models;
   for_each_pair(std::span<const Aabb>(larger.sample), options,
                 [&n_pairs](std::uint32_t /*a*/, std::uint32_t /*b*/) { ++n_pairs; });

@@ -74,6 +74,7 @@ bool run_search(const Plan& plan, const VoxelProblem& voxel, Receiver& receiver,
   // Boxes of pieces touch where their objects may overlap.
   options.touching = plan.pieces.used ? Touching::counts : plan.rules.touching;
   options.models = voxel.models();
+  options.within_model = options.models.empty() ? WithinModel::test : WithinModel::skip;
   search.restart(options, !options.models.empty(), {&receiver, &Receiver::call});
   try {
     run(search);

@@ -63,7 +63,8 @@ std::int64_t peak_bytes() {
 constexpr int n_clients = 8;
 
 Task collide_once(ArrayProxy<Client> clients) {
-  const Scoped collider(make_collider({.voxel_size = {1, 1, 1}}));
+  const Scoped collider(
+      make_collider({.voxel_size = {1, 1, 1}, .rules = {.within_model = WithinModel::skip}}));
   co_await epoch([&] { clients.broadcast<&Client::submit>(collider); });
   const Report report{report_to<&Client::receive>(clients), {}};
   co_await collider.run(report);

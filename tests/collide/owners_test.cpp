@@ -1,5 +1,6 @@
 // The owners of objects: elements of arrays of two and three dimensions, and members of groups.
 #include "collide/collider.hpp"
+#include "collide/pairs.hpp"
 #include "runtime/runtime.hpp"
 #include "runtime/testing.hpp"
 #include "tests/support/catch.hpp"
@@ -83,4 +84,50 @@ TEST_CASE("owners may be elements of arrays of two and three dimensions, and mem
   machine.run([&]() -> Task { return report_to_all(n_received); }).require_success();
   REQUIRE(n_received == 2 * 3);
   REQUIRE_THROWS_WITH(owner_of(Index3{0, 1 << 20, 0}), Catch::Contains("more than 21 bits"));
+  REQUIRE_THROWS_WITH(owner_of(Index2{0, 1 << 30}), Catch::Contains("more than 31 bits"));
+}
+
+TEST_CASE("an owner of another array is refused with its index and the class of the receivers",
+          "[collide][parallel]") {
+  const auto report = [](OwnerId of) {
+    const test::Machine machine{.pes = 2, .seed = 7};
+    const auto result = machine.run([of]() -> Task {
+      ArrayProxy<Counter<Index1>> row;
+      co_await epoch([&] { row = create<Counter<Index1>>(range(3)); });
+      std::int64_t n = 0;
+      co_await collide_two<decltype(row), Counter<Index1>>(
+          row, owner_of(Index1{2}), of, report_to<&Counter<Index1>::receive>(row), n);
+    });
+    CHECK(result.exit_code == (of == owner_of(Index1{1}) ? 0 : 2));
+    return result.report.empty() ? std::string() : result.report.front();
+  };
+  CHECK(report(owner_of(Index1{1})).empty());
+  for (const OwnerId wrong : {owner_of(Index2{0, 1}), owner_of(Index3{0, 0, 1})}) {
+    const std::string said = report(wrong);
+    CAPTURE(said);
+    CHECK(said.find("report_to() ") != std::string::npos);
+    CHECK(said.find("Counter<") != std::string::npos);
+    CHECK(said.find("the owner " + owner_text(wrong) +
+                    " is no element of an array of 1 dimension") != std::string::npos);
+  }
+  CHECK(owner_text(owner_of(Index2{-3, 4})) == "[-3,4]");
+  CHECK(owner_text(owner_of(Index3{-3, 4, 5})) == "[-3,4,5]");
+}
+
+TEST_CASE("pairs within a model count on chares and in one thread alike", "[collide][parallel]") {
+  const std::array boxes{Aabb{{0, 0, 0}, {1, 1, 1}}, Aabb{{0.5, 0, 0}, {2, 1, 1}}};
+  std::int64_t n = 0;
+  const test::Machine machine{.pes = 2, .seed = 3};
+  machine
+      .run([&]() -> Task {
+        GroupProxy<CountingMember> members;
+        co_await epoch([&] { members = create_group<CountingMember>(); });
+        const Collider collider = make_collider({});
+        collider.submit(Objects{owner_of(PeId{0}), ModelId{0}, boxes});
+        co_await collider.run({report_to<&CountingMember::receive>(members), {}});
+        n = co_await members.reduce<&CountingMember::count>();
+      })
+      .require_success();
+  CHECK(n == 1);
+  CHECK(count_pairs(std::span<const Aabb>(boxes)) == 1);
 }

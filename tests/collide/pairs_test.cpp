@@ -101,11 +101,12 @@ void check(const Scene<Real, D>& scene, std::initializer_list<double> sizes) {
       for (const double size : sizes) {
         CAPTURE(static_cast<int>(touching), static_cast<int>(method), size, D, sizeof(Real));
         PairStatistics statistics;
-        PairOptions options{touching, {}, WithinModel::skip, size, method, &statistics};
+        PairOptions options{touching, {}, WithinModel::test, size, method, &statistics};
         const std::vector<Pair> found = sorted(pairs(boxes, options));
         REQUIRE((found == expected(scene, options)));
         REQUIRE(statistics.n_pairs == found.size());
         options.models = scene.models;
+        options.within_model = WithinModel::skip;
         REQUIRE((sorted(pairs(boxes, options)) == expected(scene, options)));
         options.within_model = WithinModel::test;
         REQUIRE(count_pairs(boxes, options) == found.size());
@@ -309,7 +310,8 @@ TEST_CASE("one model alone is left out; identical boxes make n^2 pairs in bounde
   const std::vector<Aabb> boxes(3000, Aabb{{1, 2, 3}, {4, 5, 6}});
   const std::vector<std::uint32_t> models(3000, 9);
   PairStatistics statistics;
-  PairOptions options{.models = models, .statistics = &statistics};
+  PairOptions options{
+      .models = models, .within_model = WithinModel::skip, .statistics = &statistics};
   REQUIRE(count_pairs(std::span(boxes), options) == 0);
   REQUIRE(statistics.grid.n_left_out == 3000);
   options.within_model = WithinModel::test;
@@ -325,7 +327,10 @@ TEST_CASE("a search counts the voxels and the objects in them", "[pairs]") {
   boxes.back().hi[0] = 8;
   const std::vector<std::uint32_t> models{0, 1, 0, 0, 0, 1};
   PairStatistics statistics;
-  PairOptions options{.models = models, .voxel_size = 1, .statistics = &statistics};
+  PairOptions options{.models = models,
+                      .within_model = WithinModel::skip,
+                      .voxel_size = 1,
+                      .statistics = &statistics};
   (void)count_pairs(std::span<const Aabb>(boxes), options);
   CHECK(statistics.grid.voxel_size == 1);
   CHECK(statistics.grid.n_levels == 1);
@@ -385,10 +390,12 @@ TEST_CASE("a bad box, voxel size or list of models is an error that names it", "
   for (const double bad : {-0.5, nan, inf, -inf})
     REQUIRE_THAT(refused(good, 0, {.voxel_size = bad}), Catch::Contains("is no size"));
   const std::vector<std::uint32_t> models(49);
-  REQUIRE_THAT(refused(good, 0, {.models = models}), Catch::Contains("49 models for 50 objects"));
+  REQUIRE_THAT(refused(good, 0, {.models = models, .within_model = WithinModel::skip}),
+               Catch::Contains("49 models for 50 objects"));
   const std::vector<Aabb> both(49, good);
   const std::span<const Aabb> set(both);
-  REQUIRE_THROWS_WITH(for_each_pair(set, set, {.models = models}, [&](auto, auto) { ++n_found; }),
+  REQUIRE_THROWS_WITH(for_each_pair(set, set, {.models = models, .within_model = WithinModel::skip},
+                                    [&](auto, auto) { ++n_found; }),
                       Catch::Contains("49 models for a search across two sets"));
   REQUIRE(n_found == 0);
 }

@@ -78,7 +78,10 @@ void try_objects(FuzzedDataProvider& data) {
                    objects.begin() + static_cast<std::ptrdiff_t>(n));
   std::vector<std::uint32_t> models;
   for (std::uint32_t i = 0; i < objects.size(); ++i) models.push_back(i % 3);
-  if (has_models) options.models = models;
+  if (has_models) {
+    options.models = models;
+    options.within_model = WithinModel::skip;
+  }
 
   std::size_t bad = 0;
   while (bad < objects.size() && is_valid(box_of(objects[bad]))) ++bad;

@@ -25,8 +25,7 @@ class Client : public tess::Chare<Client, tess::Index1> {
  private:
   [[nodiscard]] std::vector<tess::collide::Item> boxes() const {
     const double x = index().x;
-    const auto model = static_cast<tess::collide::ModelId>(index().x % 2);
-    return {{{{x, 0, 0}, {x + 1.5, 1, 1}}, {tess::collide::owner_of(index()), {}, model}}};
+    return {{{{x, 0, 0}, {x + 1.5, 1, 1}}, {tess::collide::owner_of(index())}}};
   }
   std::uint64_t n_pairs_ = 0;
 };

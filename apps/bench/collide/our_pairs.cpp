@@ -13,7 +13,10 @@ class OurPairs : public Method {
  public:
   OurPairs(const Problem& problem, const std::vector<Object>& objects)
       : objects_(objects), options_{.touching = problem.touching} {
-    if (problem.pairing == Pairing::across_models) options_.models = problem.models;
+    if (problem.pairing == Pairing::across_models) {
+      options_.models = problem.models;
+      options_.within_model = WithinModel::skip;
+    }
   }
 
   std::uint64_t count() override { return count_pairs(objects_, options_); }

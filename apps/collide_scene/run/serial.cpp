@@ -30,7 +30,7 @@ SerialCollision collide_once(const Scene& scene, const Rules& rules, int step,
   PairOptions options;
   options.touching = rules.open ? Touching::does_not_count : Touching::counts;
   options.models = scene.models;
-  options.within_model = rules.within_model;
+  options.within_model = scene.models.empty() ? WithinModel::test : rules.within_model;
   options.voxel_size = rules.voxel_size;
   options.statistics = &statistics;
   const auto found = [&](std::uint32_t i, std::uint32_t j) {

@@ -41,9 +41,9 @@ void fly(const FlightConstants& constants, const ParticleSpan& span,
   };
   const auto as_it_is = [](D3 v) { return v; };
   for (const VelocityChanges& step : changes)
-    if (step.half_drag > 0)
+    if (step.drag > 0)
       fly_step([&step](D3 x, D3 v) { return changed_before(step, x, v); },
-               [drag = step.half_drag](D3 v) { return slowed(drag, v); });
+               [drag = step.drag](D3 v) { return last_velocity(drag, v); });
     else if (step.kicks.size() == 1)
       fly_step([kick = step.kicks.front()](D3 x, D3 v) { return kicked(kick, x, v); }, as_it_is);
     else
@@ -70,7 +70,7 @@ VelocityChanges velocity_changes(const Rules& rules, double time, double step) {
           {explosion.centre, explosion.strength * active, 1 / explosion.radius});
   }
   if (rules.air_drag && rules.air_drag->law == DragLaw::quadratic)
-    changes.half_drag = 0.5 * rules.air_drag->rate * step;
+    changes.drag = rules.air_drag->rate * step;
   return changes;
 }
 
@@ -83,10 +83,10 @@ void change_velocities_before(const VelocityChanges& changes, const ParticleSpan
 }
 
 void change_velocities_after(const VelocityChanges& changes, const ParticleSpan& span) {
-  if (!(changes.half_drag > 0)) return;
+  if (!(changes.drag > 0)) return;
   const ParticleSpan particles = span;
   for (std::size_t p = 0; p < particles.count; p += width)
-    set_velocities(particles, p, slowed(changes.half_drag, velocities(particles, p)));
+    set_velocities(particles, p, last_velocity(changes.drag, velocities(particles, p)));
 }
 
 }  // namespace tess::dn

@@ -1,7 +1,8 @@
 // The flight of a step without a surface. Accelerations and linear drags have an exact solution.
-// Explosions and quadratic air drag change only the velocity; quadratic drag acts for half a step
-// before and half a step after the flight, which is of second order in the step (Strang 1968), and
-// exact for the velocity where nothing else acts. Private to the step loop.
+// Explosions and quadratic air drag change only the velocity. Quadratic drag, v' = -rate |v| v, takes
+// a particle ln(1 + rate |v| step) / rate far: the flight begins with the velocity that goes there in
+// a step, and afterwards that becomes v / (1 + rate |v| step). Both are exact where nothing else
+// acts, and of second order in the step otherwise. Private to the step loop.
 #pragma once
 
 #include "collide/dn_field/geometry/lanes.hpp"
@@ -45,9 +46,9 @@ struct Kick {
 /// What changes velocities in one step, apart from the flight.
 struct VelocityChanges {
   std::vector<Kick> kicks;
-  double half_drag = 0;  ///< rate × step / 2 of the quadratic air drag
+  double drag = 0;  ///< rate × step of the quadratic air drag
 
-  [[nodiscard]] bool none() const { return kicks.empty() && !(half_drag > 0); }
+  [[nodiscard]] bool none() const { return kicks.empty() && !(drag > 0); }
 };
 
 /// Explosions and quadratic air drag in [time, time + step].
@@ -69,14 +70,55 @@ inline D3 kicked(const Kick& kick, D3 x, D3 v) {
   return select(reached, fma(kick.kick * (per_r - kick.per_radius), from, v), v);
 }
 
-/// The exact solution of v' = -rate |v| v: v / (1 + rate × time × |v|).
-inline D3 slowed(double rate_time, D3 v) {
-  return (1.0 / (1.0 + rate_time * sqrt(dot(v, v)))) * v;
+/// The series below have rounding errors only up to here; beyond it arguments are halved.
+inline constexpr double series_end = 0.1;
+
+/// ln(1 + q) / q for q >= 0.
+inline D mean_of_log(D q) {
+  D factor = all(1.0);
+  for (L large = q > series_end; any(large); large = q > series_end) {
+    // ln(1 + q) = 2 ln(1 + p) for p = √(1 + q) - 1 = q per_root.
+    const D per_root = 1.0 / (1.0 + sqrt(1.0 + q));
+    q = large ? q * per_root : q;
+    factor = large ? 2.0 * per_root * factor : factor;
+  }
+  const D per = 1.0 / (2.0 + q), s = (q * per) * (q * per);  // ln(1 + q) = 2 artanh(q / (2 + q))
+  D sum = all(1.0 / 13);
+  for (const double one : {1.0 / 11, 1.0 / 9, 1.0 / 7, 1.0 / 5, 1.0 / 3, 1.0})
+    sum = fma(sum, s, all(one));
+  return 2.0 * per * factor * sum;
+}
+
+/// (1 - exp(-w)) / w for w >= 0.
+inline D mean_of_exp(D w) {
+  int n = 0;
+  D n_halved{};
+  for (L large = w > series_end; any(large); large = w > series_end, ++n) {
+    w = large ? 0.5 * w : w;
+    n_halved = large ? n_halved + 1.0 : n_halved;
+  }
+  D sum = all(1.0), per_place = w;
+  for (int i = 9; i >= 2; --i) sum = fma(sum, -w / static_cast<double>(i), all(1.0));
+  for (; n > 0; --n) {  // the mean over [0, 2w] from that over [0, w]
+    const L halved = n_halved >= static_cast<double>(n);
+    sum = halved ? sum * (1.0 - 0.5 * per_place * sum) : sum;
+    per_place = halved ? 2.0 * per_place : per_place;
+  }
+  return sum;
+}
+
+/// The velocity that goes in a step as far as v does that quadratic drag slows down.
+inline D3 mean_velocity(double rate_step, D3 v) {
+  return mean_of_log(rate_step * sqrt(dot(v, v))) * v;
+}
+/// The velocity at the end of that step.
+inline D3 last_velocity(double rate_step, D3 mean) {
+  return mean_of_exp(rate_step * sqrt(dot(mean, mean))) * mean;
 }
 
 inline D3 changed_before(const VelocityChanges& changes, D3 x, D3 v) {
   for (const Kick& kick : changes.kicks) v = kicked(kick, x, v);
-  return changes.half_drag > 0 ? slowed(changes.half_drag, v) : v;
+  return changes.drag > 0 ? mean_velocity(changes.drag, v) : v;
 }
 
 struct Flown {

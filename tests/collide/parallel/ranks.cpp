@@ -179,7 +179,7 @@ Task collide_slowly() {
   Collider collider;
   ArrayProxy<Client> clients;
   co_await epoch([&] {
-    collider = make_collider({.slack = slack});
+    collider = make_collider({.rules = {.within_model = WithinModel::skip}, .slack = slack});
     clients = create<Client>(range(2 * n_pes()));
   });
   std::int32_t n_kept = 0;
@@ -200,7 +200,8 @@ Task collide_two_at_once() {
   std::array<Collider, 2> colliders;
   std::array<ArrayProxy<Client>, 2> clients;
   co_await epoch([&] {
-    colliders = {make_collider({.slack = slack}), make_collider({.slack = 3 * slack})};
+    colliders = {make_collider({.rules = {.within_model = WithinModel::skip}, .slack = slack}),
+                 make_collider({.rules = {.within_model = WithinModel::skip}, .slack = 3 * slack})};
     for (ArrayProxy<Client>& of_one : clients) of_one = create<Client>(range(2 * n_pes()));
   });
   const BalancerProxy voxels = start_balancing(colliders[0].voxels, {.strategy = "rotate"});
@@ -229,7 +230,7 @@ Task collide_rounds() {
   Collider collider;
   ArrayProxy<Client> clients;
   co_await epoch([&] {
-    collider = make_collider({.piece_length = 0.2});
+    collider = make_collider({.rules = {.within_model = WithinModel::skip}, .piece_length = 0.2});
     clients = create<Client>(range(n_clients));
   });
   const BalancerProxy voxels = start_balancing(collider.voxels, {.strategy = "rotate"});

@@ -57,7 +57,8 @@ std::vector<std::int64_t> received(const std::string& option, Receivers receiver
     Collider collider;
     ArrayProxy<Row> rows;
     co_await epoch([&] {
-      collider = make_collider({.voxel_size = {4, 4, 4}});
+      collider =
+          make_collider({.voxel_size = {4, 4, 4}, .rules = {.within_model = WithinModel::skip}});
       rows = create<Row>(range(2));
     });
     co_await epoch([&] { rows.broadcast<&Row::submit>(collider, n_each); });
@@ -187,7 +188,7 @@ TEST_CASE("a report that nothing receives is refused", "[collide][parallel]") {
   std::string error;
   tess::Setup setup{make_threads_machine(1), {}};
   const int code = run(setup, [&]() -> Task {
-    const Collider collider = make_collider({});
+    const Collider collider = make_collider({.rules = {.within_model = WithinModel::skip}});
     try {
       co_await collider.run({});
     } catch (const Error& e) {

@@ -47,7 +47,8 @@ unsigned long long n_sent(std::int32_t n_houses, std::int32_t n_collisions) {
     Collider collider;
     ArrayProxy<Street> streets;
     co_await epoch([&] {
-      collider = make_collider({.voxel_size = {2, 2, 2}});
+      collider =
+          make_collider({.voxel_size = {2, 2, 2}, .rules = {.within_model = WithinModel::skip}});
       streets = create<Street>(range(2));
     });
     // No pair leaves the PE that finds it: PE 0, which has most of the objects.

@@ -146,6 +146,7 @@ void check_thin(const std::vector<Object>& objects, double length) {
       REQUIRE((found_thin(a, b, longest, false, options) == across));
       REQUIRE((found_thin(b, a, longest, false, options) == reverse));
       options.models = models;
+      options.within_model = WithinModel::skip;
       REQUIRE((found_thin(all, all, longest, true, options) == of_models));
       options.models = two_models;
       REQUIRE((found_thin(all, all, longest, true, options) == of_two));
@@ -315,9 +316,9 @@ TEST_CASE("a thin object that is not valid, and a list of models that is too sho
   std::vector<Triangle> needles = triangles(6, {.n = 400, .length = 0.5, .width = 1e-4});
   const std::vector<std::uint32_t> models(399);
   const std::span<const Triangle> all(needles);
-  REQUIRE_THROWS_WITH(count_pairs(all, {.models = models}),
+  REQUIRE_THROWS_WITH(count_pairs(all, {.models = models, .within_model = WithinModel::skip}),
                       Catch::Contains("399 models for 400 objects"));
-  REQUIRE_THROWS_WITH(count_pairs(all, all, {.models = models}),
+  REQUIRE_THROWS_WITH(count_pairs(all, all, {.models = models, .within_model = WithinModel::skip}),
                       Catch::Contains("across two sets"));
   needles[17].corners[1][2] = std::numeric_limits<double>::infinity();
   REQUIRE_THROWS_WITH(count_pairs(all), Catch::Contains("of object 17 is not valid"));
