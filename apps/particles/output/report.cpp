@@ -81,6 +81,13 @@ Json document(const Scene& scene, const RunResult& result, const Report& report)
           fmt::format("{:.2g} % of it is thinner than {:.3g}: particles may pass there",
                       100 * share, least_wall(scene.rules, scene.objects[i]));
   out["nonfinite"] = end.nonfinite;
+  if (begin.inside != 0) {
+    out["began_inside"] = begin.inside;
+    out["remedy"] = fmt::format(
+        "{} of {} particles begin below a surface, and {} are below one at the end: rules act from "
+        "outside; move the emitters",
+        begin.inside, begin.particles, end.inside);
+  }
   out["tunnelled"] = end.tunnelled;
   out["tunnelled_found_by"] = result.audited == 0                     ? "last step"
                               : result.audited == scene.n_particles() ? "each step"

@@ -76,6 +76,17 @@ void check_units(const Scene& scene, std::size_t number, double scale) {
            " apart; move the scene to the origin, or choose a coarser field");
 }
 
+/// A spring pushes along the normal at the start of a step, and an impact bounces on the way: if the
+/// body turns far meanwhile, the one pushes particles through what the other would stop.
+void check_turn(const Scene& scene, std::size_t number) {
+  constexpr double most_turn = 1;  // radian in a step
+  const double turn = norm(scene.objects[number].frame.angular_velocity) * scene.dt;
+  if (scene.rules.spring && scene.rules.impact && turn > most_turn)
+    refuse(scene, number, "].motion.spin: turns ", turn, " rad in a step of dt ", scene.dt,
+           ", at most ", most_turn, " with spring and impact together; give a dt of ",
+           scene.dt * most_turn / turn, " or less");
+}
+
 void check_object(const Scene& scene, std::size_t number) {
   const SceneObject& object = scene.objects[number];
   const double scale = least_scale(scene, object);
@@ -84,6 +95,7 @@ void check_object(const Scene& scene, std::size_t number) {
            " a second takes the scale from ", object.frame.scale, " to ", scale, " in ",
            scene.steps, " steps of ", scene.dt, "; it must stay above 0");
   check_thickness(scene, number, scale);
+  check_turn(scene, number);
   if (builds_fields(scene)) check_units(scene, number, scale);
   if (object.thin_share > most_thin)
     refuse(scene, number, "].shape: ", 100 * object.thin_share,

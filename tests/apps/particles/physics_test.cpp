@@ -1,5 +1,6 @@
 // What runs of scenes must show: energies that rules keep, particles that go through a surface or
 // cannot, and the paper's three regimes of flow around a shaft.
+#include "apps/particles/output/report.hpp"
 #include "apps/worst.hpp"
 #include "collide/dn_field/shapes.hpp"
 #include "tests/apps/particles/run_scene.hpp"
@@ -90,6 +91,23 @@ TEST_CASE("a growing sphere sweeps up what rests around it, and lets nothing in"
   CHECK_THROWS_WITH(check_scene(shrinks), Catch::Contains("objects[0].motion.scale: -0.9"));
 }
 
+TEST_CASE("spring and impact together want a body that turns little in a step",
+          "[particles][physics]") {
+  const auto scene = [](const std::string& rules) {
+    return R"({"dt": 0.1, "steps": 10, "objects":
+      [{"shape": {"box": {"half": [1, 1, 1]}}, "resolution": 20, "motion": {"spin": [0, 12, 16]}}],
+      "emitters": [{"count": 1, "sphere": {"radius": 1}}], "rules": {)" +
+           rules + "}}";
+  };
+  const std::string spring = R"("spring": {"stiffness": 1, "reach": 0.1})",
+                    impact = R"("impact": {})";
+  CHECK_NOTHROW(parse_scene(scene(spring), "scene.json"));
+  CHECK_NOTHROW(parse_scene(scene(impact), "scene.json"));
+  CHECK_THROWS_WITH(parse_scene(scene(spring + ", " + impact), "scene.json"),
+                    Catch::Contains("objects[0].motion.spin: turns 2 rad in a step of dt 0.1, at "
+                                    "most 1 with spring and impact together; give a dt of 0.05"));
+}
+
 TEST_CASE("particles that go through a surface are counted, each once", "[particles][physics]") {
   // A spring too weak to hold anything: all 200 go in at the top and leave at the bottom.
   const std::string weak = R"({"spring": {"stiffness": 1e-6, "reach": 0.1}})";
@@ -117,7 +135,11 @@ TEST_CASE("particles that go through a surface are counted, each once", "[partic
   // A particle that begins inside has not gone through a surface.
   scene.emitters[0].low = {-0.5, -0.5, -0.2}, scene.emitters[0].high = {0.5, 0.5, 0.2};
   scene.emitters[0].velocity = {};
-  CHECK(run_scene(scene, "--pes=2").last().tunnelled == 0);
+  const Ran begun = run_scene(scene, "--pes=2");
+  CHECK(begun.last().tunnelled == 0);
+  CHECK(table(scene, begun.result, {}).find("200 of 200 particles begin below a surface") !=
+        std::string::npos);
+  CHECK(table(scene, last_step.result, {}).find("begin below") == std::string::npos);
 }
 
 TEST_CASE("particles that a spinning body meets and takes along have not gone through it",
