@@ -128,7 +128,8 @@ struct AnyCoupling::State {
     setup.clamp = options.clamp;
     setup.source_values = options.source_values;
     setup.target_values = options.target_values;
-    setup.collider = collide::make_collider({Point{}, options.voxel_size, {}});
+    setup.collider = collide::make_collider(
+        {.voxel_size = options.voxel_size, .rules = {.within_model = collide::WithinModel::skip}});
     setup.ledger = create_group<Ledger>();
     if (has_directory()) setup.directory = create_group<PointDirectory>();
     // Each coupling has its own collider.
@@ -221,6 +222,7 @@ Task AnyCoupling::collide_covers() {
   if (is_new && state.is_conservative()) co_await epoch([&] { state.set_up(); });
   co_await epoch([&] {
     if (is_new && !state.is_conservative()) state.set_up();
+    setup.ledger.broadcast<&Ledger::keep_pieces>(setup.source.id());
     if (state.is_conservative()) {
       setup.source.broadcast<&AnyPiece::m2m_submit_overlap_source>(setup);
       setup.target.broadcast<&AnyPiece::m2m_submit_overlap_target>(setup);
@@ -286,6 +288,7 @@ Task AnyCoupling::apply(detail::Giver give, detail::Taker take,
     state.require_usable("applied");
     co_await epoch([&, id = setup.id] {
       turns->begins(take->channel);
+      setup.ledger.broadcast<&Ledger::require_pieces>(id, setup.source.id());
       setup.source.broadcast<&AnyPiece::m2m_give_values>(id, give, take);
       setup.target.broadcast<&AnyPiece::m2m_take_if_alone>(id, take);
     });

@@ -23,8 +23,7 @@
 //
 // A search finds the donors of every target point, once; apply() moves a field, any number of
 // times. Search again if a mesh moves or changes, and if pieces are inserted or destroyed: before
-// that, a target piece waits for the values of a source piece that is gone, and keeps its own.
-// Values travel from piece to piece; no PE collects them. Any
+// that, apply() ends the job. Values travel from piece to piece; no PE collects them. Any
 // number of couplings may exist and be in flight. A piece may be source and target of several. The
 // arrays have one to three dimensions, dense or sparse.
 //

@@ -84,6 +84,14 @@ class ArrayProxy : public detail::WholeHandle<ArrayProxy<C>> {
   /// coroutines of its elements are done.
   [[nodiscard]] bool ended() const { return current_pe().ended(id_); }
 
+  /// How many elements of the array were destroyed on this PE so far, and the last one in words: for
+  /// libraries whose plans are about elements.
+  [[nodiscard]] std::pair<std::uint64_t, std::string> destroyed_here() const {
+    const detail::Collection* array = detail::find_collection(current_pe(), id_);
+    if (array == nullptr || array->n_destroyed() == 0) return {};
+    return {array->n_destroyed(), array->last_destroyed()};
+  }
+
   /// A target for results: entry method F of all elements.
   template <auto F>
   [[nodiscard]] auto target() const {

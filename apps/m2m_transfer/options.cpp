@@ -4,6 +4,8 @@
 #include "runtime/command_line.hpp"
 #include "runtime/core/error.hpp"
 
+#include <filesystem>
+
 namespace m2m_transfer {
 namespace {
 
@@ -87,8 +89,8 @@ void add_options(tess::CommandLine& line, DriverOptions& options, std::string& s
   line.option("--study WHAT", study,
               "h: error against run time over several meshes (default); kind: the same for every "
               "kind; steps: the time that kept donors save. SOURCE and TARGET can be ladders such "
-              "as kuhn:8,16,32@0.2 or a.msh,b.msh; --policy can be repeated. A folder (as --plot) "
-              "or a ladder without TARGET can stand in place of h")
+              "as kuhn:8,16,32@0.2 or a.msh,b.msh; --policy can be repeated. A folder (as --plot; "
+              "./NAME if it is new) or a ladder without TARGET can stand in place of h")
       .takes(0, 1);
   line.option("--round-trips N,N,…", options.round_trips,
               "SOURCE to TARGET and back with one pair of handles, and the drift after so many "
@@ -105,6 +107,13 @@ void add_options(tess::CommandLine& line, DriverOptions& options, std::string& s
 void read_study(const std::string& study, DriverOptions& options) {
   const bool is_named = study == "h" || study == "kind" || study == "steps";
   const bool is_ladder = study.starts_with("kuhn:") && options.request.source.empty();
+  // A folder has a '/' unless it is there already: a word may be the name of a study, mistyped.
+  if (!is_named && !is_ladder && !study.empty() && study.find('/') == std::string::npos &&
+      !std::filesystem::is_directory(study))
+    fail(ErrorCode::bad_argument, "--study ", study,
+         ": is none of h, kind and steps, and no folder "
+         "of this name is there; name a new folder ./",
+         study);
   if (is_ladder) options.request.source = study;
   if (!is_named && !is_ladder && options.plot.empty()) options.plot = study;
   options.study = is_named ? study : "h";

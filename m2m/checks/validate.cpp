@@ -5,6 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <utility>
+#include <vector>
 
 namespace tess::m2m {
 namespace {
@@ -40,6 +43,18 @@ std::array<Point, 4> corners_at(const TetMesh& mesh, std::size_t tet) {
   return corners;
 }
 
+/// Fails for two equal ids of a piece. They usually ascend, which one pass shows.
+void require_unique(std::span<const GlobalId> ids, const char* what, const char* list) {
+  if (std::adjacent_find(ids.begin(), ids.end(), std::greater_equal<>()) == ids.end()) return;
+  std::vector<std::pair<GlobalId, std::size_t>> sorted;
+  for (std::size_t i = 0; i < ids.size(); ++i) sorted.emplace_back(ids[i], i);
+  std::sort(sorted.begin(), sorted.end());
+  for (std::size_t i = 1; i < sorted.size(); ++i)
+    if (sorted[i].first == sorted[i - 1].first)
+      fail(ErrorCode::bad_mesh, what, " ", sorted[i - 1].second, " and ", sorted[i].second,
+           " of a piece have the same id ", sorted[i].first, ": ", list, " are unique in the mesh");
+}
+
 }  // namespace
 
 MeshCensus validate(const TetMesh& mesh) {
@@ -72,6 +87,7 @@ void validate(const MeshView& mesh) {
     fail(ErrorCode::bad_mesh, "a piece of ", n, " points and ", mesh.tets.size(),
          " tetrahedra has ", mesh.point_ids.size(), " point_ids and ", mesh.tet_ids.size(),
          " tet_ids; give an id for each");
+  require_unique(mesh.tet_ids, "tetrahedra", "tet_ids");
   // Each search validates, so the passes that decide have no branch and are vectorised.
   const auto is_bad = [](double x) { return !(std::abs(x) <= 1e100); };
   bool bad = false;

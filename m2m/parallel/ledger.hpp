@@ -3,6 +3,7 @@
 #pragma once
 
 #include "collide/collider.hpp"
+#include "m2m/coupling_id.hpp"
 #include "m2m/mesh.hpp"
 #include "m2m/tally.hpp"
 #include "m2m/worst_places.hpp"
@@ -10,6 +11,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -62,13 +64,29 @@ class Ledger : public Group<Ledger> {
   void add_alone() { ++page_.n_alone; }
   void add_source(collide::OwnerId owner) { page_.take_source(owner); }
 
+  /// Entry method: a search uses the source pieces that are there now.
+  void keep_pieces(CollectionId source) { n_destroyed_ = destroyed_here(source).first; }
+  /// Ends the job if one of them was destroyed on this PE: a target piece would lack its values.
+  void require_pieces(CouplingId coupling, CollectionId source) {
+    const auto [n, last] = destroyed_here(source);
+    TESS_CHECK(n == n_destroyed_, last, ", a source piece of coupling ",
+               static_cast<std::uint64_t>(coupling),
+               ", was destroyed after the last search: search again before values are given");
+  }
+
   /// Entry method: gives the sums since the last call.
   void close_page(Callback<LedgerPage> target) {
     contribute(JoinPages{}, std::exchange(page_, {}), std::move(target));
   }
 
  private:
+  /// Of an array of any class.
+  static std::pair<std::uint64_t, std::string> destroyed_here(CollectionId array) {
+    return ArrayProxy<Ledger>(array).destroyed_here();
+  }
+
   LedgerPage page_;
+  std::uint64_t n_destroyed_ = 0;
 };
 
 }  // namespace tess::m2m

@@ -61,6 +61,12 @@ void TargetSide::add(const DonorAnswer& answer) {
     const std::int32_t row = asked.rows[answer.points[i]];
     asked.held.push_back(row);
     Best& best = best_[static_cast<std::size_t>(row)];
+    const Candidate& mine = answer.candidates[i];
+    if (mine.tet == best.candidate.tet && mine.status != Status::outside)
+      fail(ErrorCode::bad_mesh, "coupling ", static_cast<std::uint64_t>(setup.id),
+           ": the source pieces ", setup.source.text_of(best.source), " and ",
+           setup.source.text_of(answer.from), " have tetrahedra of the same id ", mine.tet,
+           ": tet_ids are unique in the mesh");
     if (better(answer.candidates[i], best.candidate)) best = {answer.candidates[i], answer.from};
   }
   asked.rows = {};

@@ -99,6 +99,10 @@ class Collection : public HostedCollection {
     reductions_.added(element.state_.next_reduction++, cause_of(element));
   }
 
+  /// The elements that were destroyed here while the collection lived, and the last one in words.
+  [[nodiscard]] std::uint64_t n_destroyed() const { return n_destroyed_; }
+  [[nodiscard]] virtual std::string last_destroyed() const { return {}; }
+
   /// The element is destroyed now: its destructor does not contribute.
   static void counts_no_more(Element& element) { element.state_.created_after = destroyed_now; }
   /// Ends the run with the element's name and the claim if its destructor runs.
@@ -292,6 +296,7 @@ class Collection : public HostedCollection {
   void enter_sections(Element& element, Memberships&& memberships);
 
   Pe& pe_;
+  std::uint64_t n_destroyed_ = 0;
 
  private:
   /// True if a barrier has seen the element.

@@ -132,6 +132,7 @@ refuses "would overwrite SOURCE" "$bin/m2m_transfer" "$scratch/r.B.exo" kuhn:3 k
 "$bin/m2m_transfer" "$scratch/r.B.exo" kuhn:3 --fields x --out "$scratch/r.exo" >"$scratch/out" || fail "one result has the name given"
 refuses kind "${transfer[@]}" kuhn:2 kuhn:2 --kind perhaps
 refuses "--plot" "$bin/m2m_transfer" kuhn:2 kuhn:3 --study kind --plot "$scratch/empty.exo"
+refuses "--study kinds: is none of h, kind and steps" "$bin/m2m_transfer" kuhn:2 kuhn:3 --study kinds
 refuses missing.msh "$bin/m2m_transfer" --json "$scratch/result.json" "$scratch/missing.msh" --stability
 
 overset=("$bin/overset" --json "$scratch/result.json")

@@ -105,8 +105,13 @@ std::string table(const TransferReport& r) {
   };
   out += fmt::format("{} -> {}\n", r.source, r.target);
   line("machine", r.machine);
-  line("chares", fmt::format("{} per mesh{}", r.chares,
-                             r.voxel == 0 ? "" : fmt::format(", voxels of {:.4g}", r.voxel)));
+  const std::size_t n_chares = static_cast<std::size_t>(r.chares);
+  line("chares",
+       fmt::format("{} per mesh{}{}", r.chares,
+                   n_chares <= r.source_tets ? ""
+                                             : fmt::format(", {} of them without a tetrahedron",
+                                                           n_chares - r.source_tets),
+                   r.voxel == 0 ? "" : fmt::format(", voxels of {:.4g}", r.voxel)));
   line("vertices", fmt::format("{} from {} tetrahedra", r.targets, r.source_tets));
   for (const auto& [title, elements] : lines_of(r.source_elements, r.target_elements))
     line(title, elements);

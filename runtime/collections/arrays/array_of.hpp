@@ -218,6 +218,9 @@ class ArrayOf : public Collection {
   void take_in(Arrival<Index>& arrival);
   /// An element that arrives after the end of its array is destroyed, and no epoch waits for it.
   static std::uint64_t drop_arrival(Pe& pe, Envelope& envelope);
+  [[nodiscard]] std::string last_destroyed() const override {
+    return constructed_text(&last_destroyed_);
+  }
   [[nodiscard]] std::string constructed_text(const void* index) const override {
     return name() + index_text(*static_cast<const Index*>(index));
   }
@@ -370,7 +373,8 @@ class ArrayOf : public Collection {
   std::size_t n_purposeful_ = 0;            // parked messages that may become unwanted, or more
   std::size_t n_hints_ = 0;                 // hints learnt since they were last forgotten
   Messages pending_, waiting_, destroyed_;  // parked messages by reason (Parked)
-  ByIndex<std::uint32_t> n_destroyed_;      // destructions that the home has not confirmed
+  ByIndex<std::uint32_t> n_unconfirmed_;    // destructions that the home has not confirmed
+  Index last_destroyed_{};
 };
 
 template <class Index>

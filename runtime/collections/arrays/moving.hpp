@@ -235,10 +235,12 @@ void ArrayOf<Index>::destroy_here(Indexed& element) {
     table_.at(index).set(IndexState::destroyed, pe_.id(), version);
   } else {
     table_.at(index).set_unknown();
-    ++n_destroyed_[index];
+    ++n_unconfirmed_[index];
     table_.at(index).park(Parked::destroyed);
   }
   counts_no_more(element);
+  ++n_destroyed_;
+  last_destroyed_ = index;
   destroy(element);
   reductions().remove_member(next);
   reductions().advance();
@@ -258,9 +260,9 @@ void ArrayOf<Index>::on_destroy_report(const DestroyReport& report) {
 
 template <class Index>
 void ArrayOf<Index>::on_destroy_noted(const DestroyNoted& noted) {
-  const auto n_destroyed = n_destroyed_.find(noted.index);
+  const auto n_destroyed = n_unconfirmed_.find(noted.index);
   if (--n_destroyed->second != 0) return;
-  n_destroyed_.erase(n_destroyed);
+  n_unconfirmed_.erase(n_destroyed);
   reroute(unpark(noted.index, Parked::destroyed));
   table_.tidy(noted.index);
 }

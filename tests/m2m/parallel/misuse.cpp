@@ -52,6 +52,8 @@ class Patch : public Chare<Patch>, public Piece<Patch> {
     load(small);
   }
   void number_alike() { part_.point_ids.assign(part_.point_ids.size(), 7); }
+  void number_tets_alike() { part_.tet_ids.assign(part_.tet_ids.size(), 7); }
+  void show_as(ElementProxy<Patch> other) { other.send<&Patch::load>(part_); }
   void vanish() { load({}); }
   void forget() { values_.clear(); }
   void go_on(GroupProxy<Again> again) { again_ = again; }
@@ -123,6 +125,9 @@ Task misuse(std::string name, TransferKind kind) {
   CouplingOptions options;
   options.kind = kind;
   if (name == "same_ids") co_await epoch([&] { source[{1}].send<&Patch::number_alike>(); });
+  if (name == "same_tet_ids")
+    co_await epoch([&] { source[{1}].send<&Patch::number_tets_alike>(); });
+  if (name == "same_tets") co_await epoch([&] { source[{0}].send<&Patch::show_as>(source[{1}]); });
   Coupling coupling(source, target, options);
   if (name == "two_first_searches") {
     const auto first = coupling.search();
@@ -163,6 +168,7 @@ Task misuse(std::string name, TransferKind kind) {
     co_await epoch([&] { copy.destroy(); });
     if (name == "copy_searched") co_await coupling.search();
   }
+  if (name == "source_gone") co_await epoch([&] { source[{1}].destroy(); });
   if (name == "shrunk") co_await epoch([&] { source.broadcast<&Patch::shrink>(); });
   if (name.starts_with("weights_")) co_await collect_too_late(name, source, target, coupling);
   if (name.starts_with("settled_")) co_await settle_alone(name, source, target, coupling);

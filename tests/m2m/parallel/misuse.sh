@@ -43,6 +43,12 @@ for misuse in settled_without_flags settled_twice; do
 done
 ends vanished "a piece has 0 rows of values, and had [0-9]* in the last search"
 exits 1 "two points of a piece have the id 7: point_ids and tet_ids are unique in the mesh" "$program" same_ids conservative --pes 2
+for kind in linear conservative; do
+  exits 2 "tetrahedra 0 and 1 of a piece have the same id 7: tet_ids are unique in the mesh" "$program" same_tet_ids "$kind" --pes 2
+done
+exits 2 "coupling [0-9]*: the source pieces \[[01]\] and \[[01]\] have tetrahedra of the same id [0-9]*: tet_ids are unique in the mesh" \
+  "$program" same_tets linear --pes 2
+ends source_gone "Patch\[1\], a source piece of coupling [0-9]*, was destroyed after the last search: search again before values are given"
 ends forgotten "give as many rows, ghosts included\|give equally many"
 ends source_moved "this piece is no source of the coupling: await search() first, use it before its destroy(), and serialise .couplings. if pieces migrate"
 ends target_moved "this piece is no target of the coupling: await search() first, use it before its destroy(), and serialise .couplings. if pieces migrate"
