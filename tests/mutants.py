@@ -183,8 +183,8 @@ def copy_sources(planted_files):
     names = {name for name in names if name and (ROOT / name).is_file()}
     for path in list(COPY.rglob("*")) if COPY.exists() else []:
         name = str(path.relative_to(COPY))
-        if path.is_file() and not name.startswith("build/") and name not in names:
-            path.unlink()
+        if path.is_file() and not name.startswith("build/") and name not in names | {"planted.hpp"}:
+            path.unlink()  # planted.hpp keeps its time: all planted files include it
     for name in sorted(names):
         if name in planted_files:
             write(COPY / name, planted_files[name].encode())
