@@ -98,12 +98,14 @@ class Chare : public detail::TessContributor<IndexType> {
   /// broadcast. A broadcast leads to the contributions of its entry method, and of the coroutines,
   /// timers and messages between elements of the array that follow from it.
   ///
-  /// Insert elements while no round is under way, and await an epoch around it, in two cases. If
-  /// rounds overlap (a broadcast is started before the result of the last one is known): a new
-  /// element that contributes to a round before its first is refused by name. And if elements
-  /// contribute in an entry method that another array or group calls, or the main program: the
-  /// round in whose middle an element is created waits for it (a coroutine of a broadcast that
-  /// awaits such a message is no such case).
+  /// If rounds overlap (one is started before the result of the last one is known) while elements
+  /// are inserted, name them: contribute(Round{k}, …) gives a value of round k, and
+  /// insert(Round{k}, …) an element that is in round k and later ones. Calls may overtake each other
+  /// then. Otherwise insert elements while no round is under way, and await an epoch around it, in
+  /// two cases. If rounds overlap: a new element that contributes to a round before its first is
+  /// refused by name. And if elements contribute in an entry method that another array or group
+  /// calls, or the main program: an element whose insertion was not awaited is refused by name (a
+  /// coroutine of a broadcast that awaits such a message is no such case).
   using detail::TessContributor<IndexType>::contribute;
 };
 

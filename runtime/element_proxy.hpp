@@ -112,17 +112,31 @@ class ElementProxy {
   /// joins the reductions that they lead to: see Chare::contribute().
   template <class... Args>
   void insert(Args&&... args) const {
-    construct(current_pe().id(), detail::Demand::insert, std::forward<Args>(args)...);
+    construct(current_pe().id(), detail::Demand::insert, 0, std::forward<Args>(args)...);
   }
   /// Creates the element on another PE; otherwise like insert().
   template <class... Args>
   void insert_on(PeId pe, Args&&... args) const {
-    construct(pe, detail::Demand::insert, std::forward<Args>(args)...);
+    construct(pe, detail::Demand::insert, 0, std::forward<Args>(args)...);
+  }
+  /// Creates the element on this PE, or another; its first contribution is to this round, to which
+  /// all elements contribute by contribute(Round, …). What contributes to the round is called after
+  /// this call, or as its consequence.
+  template <class... Args>
+  void insert(Round joins, Args&&... args) const {
+    insert_on(current_pe().id(), joins, std::forward<Args>(args)...);
+  }
+  template <class... Args>
+  void insert_on(PeId pe, Round joins, Args&&... args) const {
+    check_not_empty();
+    construct(pe, detail::Demand::insert,
+              detail::join_at(current_pe(), collection_, joins, in_words()),
+              std::forward<Args>(args)...);
   }
   /// Creates the element on this PE unless it exists.
   template <class... Args>
   void insert_if_absent(Args&&... args) const {
-    construct(current_pe().id(), detail::Demand::insert_if_absent, std::forward<Args>(args)...);
+    construct(current_pe().id(), detail::Demand::insert_if_absent, 0, std::forward<Args>(args)...);
   }
 
   /// Destroys the element.
@@ -272,7 +286,7 @@ class ElementProxy {
     }
   }
   template <class... Args>
-  void construct(PeId where, detail::Demand demand, Args&&... args) const {
+  void construct(PeId where, detail::Demand demand, std::uint32_t joins, Args&&... args) const {
     static_assert(std::is_constructible_v<C, std::decay_t<Args>...>,
                   "the chare has no constructor that takes these arguments");
     Pe& pe = current_pe();
@@ -282,6 +296,7 @@ class ElementProxy {
     message->demand = demand;
     message->ask = true;
     message->asker = where;
+    message->led_by = joins;
     if (where == pe.id()) {
       post_message(pe, message);
     } else {

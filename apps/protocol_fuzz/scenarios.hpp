@@ -18,6 +18,7 @@ void broadcasts(Trial& trial);           // collectives/broadcasts.cpp
 void constructors(Trial& trial);         // elements/constructors.cpp
 void rounds(Trial& trial);               // collectives/rounds.cpp
 void inner_rounds(Trial& trial);         // collectives/inner_rounds.cpp
+void driven_rounds(Trial& trial);        // collectives/driven_rounds.cpp
 void newborns(Trial& trial);             // elements/newborns.cpp
 void refinement(Trial& trial);           // elements/newborns.cpp
 void sections(Trial& trial);             // collectives/sections.cpp

@@ -72,7 +72,9 @@ Collection::Collection(Pe& pe, CollectionId id, std::string name, const Range& r
       broadcasts_(broadcast_host_, pe.completion(), pe.id(), root(), pe.n_pes()),
       reductions_(reduction_host_, pe.completion(), pe.id(), root(), pe.n_pes(),
                   {this->name() + ": reduction",
-                   [this](std::uint32_t number) { return elements_before(number); }}) {}
+                   [this](std::uint32_t number) { return elements_before(number); }}) {
+  for (const std::uint32_t round : pe.take_early_joins(id)) reductions_.add_member(round);
+}
 
 Collection::~Collection() = default;
 
@@ -155,9 +157,13 @@ void Collection::unlist(Element& element) {
   elements_.pop_back();
 }
 
-void Collection::register_new(Element& element) {
+void Collection::register_new(Element& element, std::uint32_t joins) {
   const std::uint64_t applied = broadcasts_.applied();
   element.state_.seen_broadcast = applied;
+  if (joins != 0) {  // join() has registered it
+    element.state_.next_reduction = joins - 1;
+    return;
+  }
   element.state_.created_after = static_cast<std::uint32_t>(applied);
   element.state_.next_reduction = reductions_.joins_at();  // list() postpones it
   reductions_.add_member(element.state_.next_reduction);
@@ -231,15 +237,66 @@ void Collection::require_not_destroyed(const Element& element, std::string_view 
   TESS_CHECK(element.state_.created_after != destroyed_now, element_text(element), claim);
 }
 
-void Collection::contribute(Element& element, std::unique_ptr<Partial> value) {
+std::uint32_t join_at(Pe& pe, CollectionId id, Round round, std::string element) {
+  TESS_CHECK(round.number >= 0 && round.number < most_rounds, element, " cannot join at round ",
+             round.number, ": rounds are numbered from 0 to ", most_rounds - 1);
+  const auto number = static_cast<std::uint32_t>(round.number);
+  if (Collection* const known = find_collection(pe, id)) {
+    known->reductions().join(number, std::move(element));
+  } else {
+    pe.keep_early_join(id, number);
+  }
+  return number + 1;
+}
+
+void Collection::require_no_gap(const Element& element) {
+  TESS_CHECK(element.state_.ahead == 0, element_text(element),
+             " ends before it contributes to round ", element.state_.next_reduction,
+             ", but it has contributed to a later one: destroy it after its last contribution");
+}
+
+// If its insertion was awaited in an epoch, no round was open when it was inserted, or the program
+// says which. A broadcast of the array says where the element joins (see ReductionTree).
+bool Collection::is_unawaited(Element& element, const Cause& cause) {
+  const EpochId in = std::exchange(element.state_.inserted_in, not_new);
+  return in != not_new && cause.led_by == 0 && element.has_run_ &&
+         (in == EpochId{} || in == pe_.context().epoch);
+}
+
+void Collection::claim(Element& element, std::int64_t number) {
+  ElementState& state = element.state_;
+  const std::int64_t ahead = number - state.next_reduction;
+  TESS_CHECK(ahead < 64, element_text(element), " contributes to round ", number,
+             ", but it has not contributed to round ", state.next_reduction,
+             ": it may be ahead by 63 rounds; await a result before more are started");
+  TESS_CHECK(ahead >= 0 && (state.ahead >> ahead & 1U) == 0, element_text(element),
+             " contributes to round ", number,
+             " again, or before it joined: it has not contributed to round ", state.next_reduction,
+             " yet; an inserted element joins at the round that insert(tess::Round{…}, …) names");
+  const std::uint32_t before = state.next_reduction;
+  state.ahead |= std::uint64_t{1} << ahead;
+  for (; (state.ahead & 1U) != 0; state.ahead >>= 1U) ++state.next_reduction;
+  if (state.next_reduction == before) return;
+  reductions_.leave(before);
+  reductions_.enter(state.next_reduction);
+}
+
+void Collection::contribute(Element& element, std::unique_ptr<Partial> value,
+                            std::optional<Round> round) {
   if (ended_) return;  // its coroutine outlives the array: nothing waits for a result
   require_not_destroyed(element, " contributes in its destructor: contribute before destroy()");
+  const Cause cause = cause_of(element);
+  const std::int64_t number = round ? round->number : element.state_.next_reduction;
   Newcomer newcomer;
-  if (element.state_.created_after != 0)
-    newcomer = {element.state_.created_after, element_text(element)};
+  const bool unawaited = is_unawaited(element, cause);
+  if (unawaited || element.state_.created_after != 0)
+    newcomer = {element.state_.created_after, element_text(element), unawaited && !round};
+  if (unawaited && element.state_.seen_broadcast == element.state_.created_after)
+    reductions_.refuse_unawaited(newcomer.element, number);
   settle_join(element);
-  reductions_.contribute(element.state_.next_reduction++, pe_.context().epoch, std::move(value),
-                         cause_of(element), std::move(newcomer));
+  claim(element, number);
+  reductions_.gather(static_cast<std::uint32_t>(number), pe_.context().epoch, std::move(value),
+                     cause, std::move(newcomer), round.has_value());
 }
 
 std::string Collection::elements_before(std::uint32_t number) const {

@@ -87,12 +87,14 @@ class Collection : public HostedCollection {
   /// Calls all local elements that have not received this broadcast yet.
   void apply(const NumberedCall& call);
 
-  /// An element of this PE contributes to its next reduction.
-  void contribute(Element& element, std::unique_ptr<Partial> value);
+  /// An element of this PE contributes to its next reduction, or to the round that it names.
+  void contribute(Element& element, std::unique_ptr<Partial> value, std::optional<Round> round);
   /// The partial result to which the element can add its value directly; null if there is none.
   /// After adding, the caller calls contributed().
   [[nodiscard]] Partial* open_sum(Element& element, const PartialKind& kind) {
-    if (element.state_.created_after != 0) return nullptr;  // contribute() says that it is new
+    const ElementState& state = element.state_;
+    if (state.created_after != 0 || state.inserted_in != not_new || state.ahead != 0)
+      return nullptr;  // contribute() looks at it
     return reductions_.open_sum(element.state_.next_reduction, kind, pe_.context().epoch);
   }
   void contributed(Element& element) {
@@ -105,6 +107,8 @@ class Collection : public HostedCollection {
 
   /// The element is destroyed now: its destructor does not contribute.
   static void counts_no_more(Element& element) { element.state_.created_after = destroyed_now; }
+  /// The element ends: it is misuse if it has contributed to a round and not to one before.
+  static void require_no_gap(const Element& element);
   /// Ends the run with the element's name and the claim if its destructor runs.
   static void require_not_destroyed(const Element& element, std::string_view claim);
   /// From now on the element keeps the number of its next reduction.
@@ -286,8 +290,8 @@ class Collection : public HostedCollection {
   /// Drops the calls that a constructor requested: the element was constructed to be read from
   /// bytes, and the calls have run before its migration.
   void drop_after_construction() { after_construction_.clear(); }
-  /// Registers an element that was just created here.
-  void register_new(Element& element);
+  /// Registers an element that was just created here; `joins` as its constructor call carries it.
+  void register_new(Element& element, std::uint32_t joins = 0);
 
   /// An element leaves or is destroyed: it is not listed any more.
   [[nodiscard]] Memberships leave_sections(Element& element);
@@ -305,6 +309,11 @@ class Collection : public HostedCollection {
   }
   [[nodiscard]] static bool known(const BalanceRecord& record);
   void postpone(Element& element);
+  /// True if this is the first contribution of an element that was inserted without the name of a
+  /// round, and nothing tells that it joined at the round for which the program means the value.
+  [[nodiscard]] bool is_unawaited(Element& element, const Cause& cause);
+  /// Marks a number as contributed to; misuse if the element cannot contribute to it.
+  void claim(Element& element, std::int64_t number);
   [[nodiscard]] Cause cause_of(const Element& element) const {
     const Context& context = pe_.context();
     return {element.state_.seen_broadcast, context.element == &element ? context.led_by : 0};
@@ -379,6 +388,9 @@ class ElementScope {
 /// Makes the part on this PE of a collection of this kind; its initial elements are still to come.
 Collection& add_collection(Pe& pe, const CollectionKind& kind, CollectionId id, const Range& range,
                            const std::shared_ptr<const IndexMap>& map);
+/// An element is inserted from this PE that is a member from this round on. Returns what its
+/// constructor call carries.
+[[nodiscard]] std::uint32_t join_at(Pe& pe, CollectionId id, Round round, std::string element);
 /// Ends the job: `use`, as "a broadcast of f to", has an empty proxy.
 [[noreturn]] void refuse_empty_proxy(std::string_view use);
 /// Ends the job with the reason why find_collection() is null: the proxy is empty, or `what` has

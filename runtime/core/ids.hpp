@@ -38,6 +38,13 @@ struct EpochId {
 };
 std::ostream& operator<<(std::ostream& out, EpochId id);
 
+/// A reduction of an array by its number: 0 is the first one since the array was created or
+/// restored.
+struct Round {
+  std::int64_t number = 0;
+  friend constexpr auto operator<=>(const Round&, const Round&) = default;
+};
+
 }  // namespace tess
 
 template <>

@@ -444,6 +444,13 @@ void Pe::keep_early(CollectionId id, Envelope* message, std::uint64_t (*drop)(Pe
   collection_table_->keep_early(id, message);
 }
 
+void Pe::keep_early_join(CollectionId id, std::uint32_t round) {
+  if (!ended_.contains(id)) collection_table_->keep_early_join(id, round);
+}
+std::vector<std::uint32_t> Pe::take_early_joins(CollectionId id) {
+  return collection_table_->take_early_joins(id);
+}
+
 std::unique_ptr<HostedCollection> Pe::take_out(CollectionId id) {
   std::unique_ptr<HostedCollection> collection = collection_table_->take_out(id);
   last_id_ = CollectionId{~std::uint64_t{0}};

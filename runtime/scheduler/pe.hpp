@@ -173,6 +173,8 @@ class Pe {
   /// message is dropped: `drop` settles its epochs and returns the number of user messages that are
   /// lost with it.
   void keep_early(CollectionId id, Envelope* message, std::uint64_t (*drop)(Pe&, Envelope&));
+  void keep_early_join(CollectionId id, std::uint32_t round);
+  [[nodiscard]] std::vector<std::uint32_t> take_early_joins(CollectionId id);
   [[nodiscard]] bool ended(CollectionId id) const { return ended_.contains(id); }
   /// Removes a collection from the table: it ends here, and later messages to it are dropped.
   [[nodiscard]] std::unique_ptr<HostedCollection> take_out(CollectionId id);

@@ -548,6 +548,34 @@ tess::Task insert_between_rounds() {
   for (int i = 0; i < 2; ++i) all[{0}].send<&Overlap::open>(Overlap::Round{i});
 }
 
+/// Elements that the main program calls to contribute, without waiting for a result.
+class Driven : public tess::Chare<Driven> {
+ public:
+  void give(tess::Callback<int> target) { contribute(tess::sum, 1, target); }
+  void give_to(tess::Round round) {
+    contribute(round, tess::sum, 1, array()[{0}].target<&Driven::hear>());
+  }
+  void hear(int sum) { tess::print("the result is ", sum, "\n"); }
+  void give_and_end() {
+    give_to({1});
+    destroy();
+  }
+};
+
+void insert_unawaited() {
+  const auto all = tess::create<Driven>(tess::range(2));
+  const auto target = all[{0}].target<&Driven::hear>();
+  for (int round = 0; round < 8; ++round)
+    for (int i = 0; i < 2; ++i) all[{i}].send<&Driven::give>(target);
+  all[{2}].insert();
+  all[{2}].send<&Driven::give>(target);
+}
+tess::Task join_too_late() {
+  const auto all = tess::create<Driven>(tess::range(1));
+  co_await tess::epoch([&] { all[{0}].send<&Driven::give_to>(tess::Round{0}); });
+  all[{1}].insert(tess::Round{0});
+}
+
 auto blocks() {
   return tess::create<Block>(tess::range(3));
 }
@@ -573,6 +601,18 @@ const std::map<std::string, std::function<void()>> misuses{
     {"empty_target", [] { blocks().broadcast<&Block::give>(tess::Callback<int>()); }},
     {"different_targets", [] { blocks().broadcast<&Block::give_to_some>(); }},
     {"insert_between_rounds", [] { const tess::Task task = insert_between_rounds(); }},
+    {"insert_unawaited", &insert_unawaited},
+    {"join_too_late", [] { const tess::Task task = join_too_late(); }},
+    {"join_before_all", [] { tess::create<Driven>(tess::range(1))[{1}].insert(tess::Round{-1}); }},
+    {"round_twice",
+     [] {
+       const auto all = tess::create<Driven>(tess::range(2));
+       for (int i = 0; i < 2; ++i) all[{1}].send<&Driven::give_to>(tess::Round{0});
+     }},
+    {"round_far_ahead",
+     [] { tess::create<Driven>(tess::range(2))[{1}].send<&Driven::give_to>(tess::Round{64}); }},
+    {"end_in_a_gap",
+     [] { tess::create<Driven>(tess::range(2))[{1}].send<&Driven::give_and_end>(); }},
     {"different_operations", [] { const tess::Task task = sum_scaled(); }},
     {"any_of_none", [] { const tess::Task task = any_of_none(); }},
     {"await_every", [] { const tess::Task task = await_every(); }},

@@ -99,6 +99,9 @@ TEST_CASE("every element meets every broadcast of its life once", "[runtime][pro
 TEST_CASE("reductions are exact while elements move, come and go", "[runtime][protocol]") {
   run_seeds("rounds");
 }
+TEST_CASE("rounds that overlap are exact while elements are inserted", "[runtime][protocol]") {
+  run_seeds("driven_rounds");
+}
 TEST_CASE("an element created after a result was awaited takes part in later rounds only",
           "[runtime][protocol]") {
   run_seeds("newborns", &two_to_eight);
@@ -206,6 +209,7 @@ TEST_CASE("the scenarios hold on threads", "[runtime][protocol][threads]") {
                            "lives",
                            "broadcasts",
                            "rounds",
+                           "driven_rounds",
                            "newborns",
                            "refinement",
                            "sections",

@@ -287,12 +287,12 @@ class ArrayOf : public Collection {
 
   /// Constructs an element on this PE.
   template <class Make>
-  void construct(const Index& index, Version version, const Make& make) {
+  void construct(const Index& index, Version version, const Make& make, std::uint32_t joins = 0) {
     Indexed* element = [&] {
       const Pe::Construction construction(pe_, &index, this);
       return make();
     }();
-    add_constructed(*element, index, version);
+    add_constructed(*element, index, version, joins);
   }
   /// Constructs the initial elements, which all count as created at once.
   template <class Make>
@@ -321,7 +321,7 @@ class ArrayOf : public Collection {
 
   /// Adds an element that arrived from another PE.
   void add_arrived(Indexed* element, PeId from, Memberships&& memberships);
-  void add_constructed(Indexed& element, const Index& index, Version version);
+  void add_constructed(Indexed& element, const Index& index, Version version, std::uint32_t joins);
   void execute(Indexed& element, CallMessage* message);
   /// insert() of an element that exists: misuse unless the message allows for that.
   void refuse_insertion(CallMessage* message);

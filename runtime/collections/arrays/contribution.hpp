@@ -9,6 +9,7 @@
 #include "runtime/reduction.hpp"
 
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -36,13 +37,14 @@ void check_target(const Element& element, const Callback<T>& target) {
 struct ToArray {
   Element& element;
   Collection& collection;
+  std::optional<Round> round;
 
   [[nodiscard]] Partial* open_sum(const PartialKind& kind) const {
-    return collection.open_sum(element, kind);
+    return round ? nullptr : collection.open_sum(element, kind);
   }
   void contributed() const { collection.contributed(element); }
   void contribute(std::unique_ptr<Partial> value) const {
-    collection.contribute(element, std::move(value));
+    collection.contribute(element, std::move(value), round);
   }
 };
 /// The contributions of a member to its section.
@@ -121,6 +123,15 @@ class TessContributor : public TessIndexedElement<Index> {
     contribute(AllThere{}, NoValue{}, target.of_no_value());
   }
 
+  /// The same to the round of this number.
+  template <class Op, class T, class U>
+  void contribute(Round round, Op op, T value, const Callback<U>& target) {
+    tess_give(std::move(op), std::move(value), target, round);
+  }
+  void contribute(Round round, const Callback<void>& target) {
+    contribute(round, AllThere{}, NoValue{}, target.of_no_value());
+  }
+
   /// The same to reductions over the members of a section.
   template <class C, class Op, class T>
   void contribute(const SectionProxy<C>& section, Op op, T value, const Callback<T>& target) {
@@ -138,16 +149,16 @@ class TessContributor : public TessIndexedElement<Index> {
 
  private:
   template <class Op, class T, class U>
-  void tess_give(Op op, T value, const Callback<U>& target) {
+  void tess_give(Op op, T value, const Callback<U>& target, std::optional<Round> round = {}) {
     if constexpr (tess_fits<Op, T, U>()) {
       if (this->collection_ == nullptr) [[unlikely]] {
         const auto held = std::make_shared<std::pair<T, Callback<U>>>(std::move(value), target);
-        Element::after_construction("contribute()", [this, op, held] {
-          tess_give(op, std::move(held->first), held->second);
+        Element::after_construction("contribute()", [this, op, held, round] {
+          tess_give(op, std::move(held->first), held->second, round);
         });
         return;
       }
-      contribute_as(this->index_, ToArray{*this, *this->collection_}, std::move(op),
+      contribute_as(this->index_, ToArray{*this, *this->collection_, round}, std::move(op),
                     std::move(value), target);
     }
   }

@@ -217,6 +217,7 @@ void ArrayOf<Index>::destroy_here(Indexed& element) {
     if (n_local() == 0) free_later(*this);
     return;
   }
+  require_no_gap(element);
   const Index index = element.index_;
   const Version version = element.state_.version;
   const std::uint32_t next = element.state_.next_reduction;

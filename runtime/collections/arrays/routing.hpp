@@ -31,9 +31,11 @@ std::uint64_t ArrayOf<Index>::drop_message(Pe& pe, Envelope& envelope) {
 }
 
 template <class Index>
-void ArrayOf<Index>::add_constructed(Indexed& element, const Index& index, Version version) {
+void ArrayOf<Index>::add_constructed(Indexed& element, const Index& index, Version version,
+                                     std::uint32_t joins) {
   element.state_.version = version;
-  register_new(element);
+  register_new(element, joins);
+  if (!makes_initial_ && joins == 0) element.state_.inserted_in = pe_.context().epoch;
   table_.at(index).set_here(element);
   list(element);
   if (element.migrate_to_.value >= 0 || element.destroy_requested_) [[unlikely]]
@@ -264,10 +266,11 @@ void ArrayOf<Index>::grant(const Index& granted, Version version) {
   } else {
     const EpochId before = pe_.context().epoch;
     pe_.context().epoch = insert->epoch;
-    construct(index, version, [insert] {
+    const auto make = [insert] {
       return static_cast<Indexed*>(
           static_cast<const ElementAction<Index>&>(*insert->action).construct(*insert));
-    });
+    };
+    construct(index, version, make, insert->led_by);
     pe_.context().epoch = before;
   }
   std::vector<CallMessage*> messages = unpark(index, Parked::pending);

@@ -37,12 +37,17 @@ struct EndRecord {
 /// In place of ElementState::created_after, while the element's destructor runs.
 inline constexpr std::uint32_t destroyed_now = ~std::uint32_t{0};
 
+/// In place of ElementState::inserted_in, for an element that is not new.
+inline constexpr EpochId not_new{~std::uint64_t{0}};
+
 /// The part of an element that migrates in addition to the user's members.
 struct ElementState {
   Version version{};
   std::uint32_t next_reduction = 0;
   std::uint32_t created_after = 0;  // last broadcast before; 0 once it contributed
   std::uint64_t seen_broadcast = 0;
+  EpochId inserted_in = not_new;  // until it contributes: the epoch of its insertion
+  std::uint64_t ahead = 0;  // bit j: it has contributed to next_reduction + j; bit 0 is not set
 };
 
 class TessElement {

@@ -28,7 +28,9 @@ struct ElementMessage : Envelope {
   Demand demand = Demand::none;
   bool ask = false;  ///< the asker must ask the home for permission to create
   std::uint8_t hops = 0;
-  std::uint32_t led_by = 0;  ///< the broadcast of this array that led to the message; 0: none
+  /// The broadcast of this array that led to the message; 0: none. In a constructor call: one past
+  /// the round in which the element joins; 0: none is named.
+  std::uint32_t led_by = 0;
   /// If there is a receiver: it is here as long as the array's number of departures on this PE has
   /// this value.
   std::uint32_t n_departures = 0;

@@ -5,12 +5,6 @@
 #include "runtime/core/check.hpp"
 
 namespace tess::detail {
-namespace {
-
-// Numbers have 32 bits, and some elements are ahead.
-constexpr std::uint32_t most_rounds = ~std::uint32_t{0} - (1U << 20U);
-
-}  // namespace
 
 void ReductionTree::end() {
   gathering_.drop(completion_);
@@ -40,8 +34,16 @@ bool Cause::merge(const Cause& more) {
   return true;
 }
 
+void Reported::note(Newcomer&& other) {
+  if (other.unawaited || other.created_after > newcomer.created_after)
+    newcomer.element = std::move(other.element);
+  newcomer.created_after = std::max(newcomer.created_after, other.created_after);
+  newcomer.unawaited = newcomer.unawaited || other.unawaited;
+}
+
 bool Reported::merge(Reported&& more) {
   change += more.change;
+  named = named || more.named;
   note(std::move(more.newcomer));
   const bool is_earlier = cause.merge(more.cause);
   Gathered::merge(std::move(more));
@@ -130,9 +132,14 @@ void ReductionTree::added(std::uint32_t number, const Cause& cause) {
 
 void ReductionTree::contribute(std::uint32_t number, EpochId epoch, std::unique_ptr<Partial> value,
                                const Cause& cause, Newcomer newcomer) {
-  completion_.sent(epoch);
   leave(number);
   enter(number + 1);
+  gather(number, epoch, std::move(value), cause, std::move(newcomer), false);
+}
+
+void ReductionTree::gather(std::uint32_t number, EpochId epoch, std::unique_ptr<Partial> value,
+                           const Cause& cause, Newcomer newcomer, bool named) {
+  completion_.sent(epoch);
   if (number < next_report_) {  // this PE has reported: the element arrived later
     ReductionReport late;
     late.number = number;
@@ -140,11 +147,13 @@ void ReductionTree::contribute(std::uint32_t number, EpochId epoch, std::unique_
     late.sum.add(epoch, std::move(value));
     late.sum.cause = cause;
     late.sum.newcomer = std::move(newcomer);
+    late.sum.named = named;
     host_.send(root_, std::move(late));
-    return;
+    return advance();  // the element may be ahead in the next numbers
   }
   Gathering& gathering = gathering_.add(number, epoch, std::move(value));
   gathering.known = true;
+  gathering.named = gathering.named || named;
   gathering.note(std::move(newcomer));
   take(number, gathering, cause);
   advance();
@@ -191,12 +200,71 @@ void ReductionTree::report(std::uint32_t number, Gathering&& gathered) {
   complete_if_whole();
 }
 
+void ReductionTree::join(std::uint32_t number, std::string element) {
+  if (number >= next_report_) return add_member(number);
+  ++n_late_joins_;
+  ReductionReport late;
+  late.number = number;
+  late.sum.change = 1;
+  late.sum.newcomer.element = std::move(element);
+  late.late = true;
+  host_.send(root_, std::move(late));
+}
+
+void ReductionTree::start_count() {
+  if (counted_end_ != 0 || n_joined_ < n_joins_below_) return;
+  n_joined_before_ = n_joined_;
+  counted_end_ = next_complete_;
+  for (std::int64_t members = members_; is_whole(counted_end_, members);) ++counted_end_;
+  ReductionBegin begin;
+  begin.counts = true;
+  host_.send(here_, begin);  // the running code may contribute first and insert then
+}
+
+void ReductionTree::count_joins() {
+  n_joins_below_ = n_late_joins_;
+  n_uncounted_ = children_.size();
+  ReductionBegin begin;
+  begin.counts = true;
+  for (const PeId child : children_) host_.send(child, begin);
+  if (n_uncounted_ == 0) joins_counted();
+}
+
+void ReductionTree::joins_counted() {
+  if (root_ != here_) {
+    ReductionReport report;
+    report.counts = true;
+    report.n_joins = n_joins_below_;
+    return host_.send(parent_, std::move(report));
+  }
+  if (n_joins_below_ == n_joined_before_ && n_joined_ == n_joined_before_)
+    confirmed_end_ = counted_end_;
+  counted_end_ = 0;
+  complete_if_whole();
+}
+
 void ReductionTree::on_report(ReductionReport&& report) {
+  if (report.counts) {
+    n_joins_below_ += report.n_joins;
+    if (--n_uncounted_ == 0) joins_counted();
+    return;
+  }
   const Cause cause = report.sum.cause;
   if (report.late) {
+    const bool joins = report.sum.change > 0;
+    TESS_CHECK(!joins || report.number >= next_complete_, report.sum.newcomer.element,
+               " is inserted to join at round ", report.number, ", but ", words_.name, " ",
+               report.number, " is complete: insert it before an element is called that ",
+               "contributes to this round, or name a later one");
+    if (joins) {
+      ++n_joined_;
+      confirmed_end_ = 0;
+    }
     // A member of a number contributes to it or is destroyed before the number is complete.
-    TESS_CHECK(report.number >= next_complete_, words_.name, " ", report.number,
-               " is complete, but a report of one of its members arrives");
+    TESS_CHECK(
+        report.number >= next_complete_, words_.name, " ", report.number,
+        " is complete, but a report of one of its members arrives: an element may have been ",
+        "inserted too late to join there");
     whole_[report.number].merge(std::move(report.sum));
     if (report.joins != 0) whole_[report.joins].change += 1;
     take(report.number, cause);
@@ -215,12 +283,24 @@ void ReductionTree::on_report(ReductionReport&& report) {
 }
 
 void ReductionTree::on_begin(const ReductionBegin& begin) {
+  if (begin.counts) return count_joins();
   take(begin.number, begin.cause);
   advance();
 }
 
+void ReductionTree::refuse_unawaited(const std::string& element, std::int64_t number) const {
+  check_failed("the round of a value is known", __FILE__, __LINE__,
+               text(element, " contributes first to ", words_.name, " ", number,
+                    ", by a message that no broadcast of its array led to, but its insertion was "
+                    "not awaited: the value may be meant for a later round; name the rounds, "
+                    "insert(tess::Round{k}, …) and contribute(tess::Round{k}, …), or insert it in "
+                    "an awaited epoch while no round is under way"));
+}
+
 void ReductionTree::check_newcomer(const Reported& sum) const {
   const Newcomer& newcomer = sum.newcomer;
+  if (newcomer.unawaited && sum.cause.led_by == 0)
+    refuse_unawaited(newcomer.element, next_complete_);
   TESS_CHECK(newcomer.created_after == 0 || sum.cause.led_by - 1 >= newcomer.created_after,
              newcomer.element, " was created after broadcast ", newcomer.created_after,
              " and contributes to ", words_.name, " ", next_complete_, ", to which broadcast ",
@@ -229,12 +309,20 @@ void ReductionTree::check_newcomer(const Reported& sum) const {
              "insert elements while no round is under way, or let them send a value to a chare");
 }
 
+bool ReductionTree::is_whole(std::uint32_t number, std::int64_t& members) const {
+  const Whole* const whole = whole_.find(number);
+  if (whole == nullptr || !whole->all_reported) return false;
+  members += whole->change;
+  return static_cast<std::int64_t>(whole->n) == members;
+}
+
 void ReductionTree::complete_if_whole() {
   for (;;) {
+    std::int64_t members = members_;
+    if (!is_whole(next_complete_, members)) return;
     const Whole* const whole = whole_.find(next_complete_);
-    if (whole == nullptr || !whole->all_reported) return;
-    if (static_cast<std::int64_t>(whole->n) != members_ + whole->change) return;
-    members_ += whole->change;
+    if (whole->named && next_complete_ >= confirmed_end_) return start_count();
+    members_ = members;
     check_newcomer(*whole);
     const Whole done = whole_.take(next_complete_);
     ++next_complete_;

@@ -33,6 +33,13 @@
 // If that broadcast is started before r is known, the element may contribute to r before its PE
 // learns what led to r. So first contributions carry the broadcast after which their element was
 // created, and the root refuses a number to which that broadcast, or an earlier one, led.
+//
+// Rounds that are named may overlap. An element that is inserted with the name of its first round is
+// a member from the call of insert() on, on the calling PE, wherever and whenever it is created. If
+// that PE has reported the number, the join is late: it is sent to the root. Before the root
+// completes named numbers, it counts the late joins on all PEs. All contributions have been made
+// then, so each join that led to one of them is counted, and the root has received it if the count
+// is what it had received before it asked.
 #pragma once
 
 #include "runtime/collections/reductions/gathered.hpp"
@@ -66,22 +73,24 @@ struct Cause {
 struct Newcomer {
   std::uint32_t created_after = 0;  // 0: there is none
   std::string element;
+  // Its insertion was not awaited, and no known broadcast led it here: another contributor knows
+  // one, or rounds may overlap.
+  bool unawaited = false;
 };
 
 /// Contributions to a number, with what is reported beside them.
 struct Reported : Gathered {
   std::int64_t change = 0;  // of the membership
   Cause cause;
-  Newcomer newcomer;  // of these contributors the one that was created after the last broadcast
-  void note(Newcomer&& other) {
-    if (other.created_after > newcomer.created_after) newcomer = std::move(other);
-  }
+  Newcomer newcomer;   // of these contributors the one that was created after the last broadcast
+  bool named = false;  // one of them names the number
+  void note(Newcomer&& other);
   /// Returns true if an earlier broadcast led to it than was known.
   bool merge(Reported&& more);
   template <class Ar>
   void serialize(Ar& ar) {
     Gathered::serialize(ar);
-    ar(change, cause, newcomer);
+    ar(change, cause, newcomer, named);
   }
 };
 
@@ -93,21 +102,24 @@ struct ReductionReport {
   // In a late report: the element that leaves the membership of `number` joins there; 0: none.
   std::uint32_t joins = 0;
   bool expedites = false;
+  bool counts = false;        // the answer of a subtree to a count of late joins; nothing else
+  std::uint64_t n_joins = 0;  // the number of late joins
   template <class Ar>
   void serialize(Ar& ar) {
-    ar(number, late, expedites, joins, sum);
+    ar(number, late, expedites, joins, counts, n_joins, sum);
   }
   [[nodiscard]] std::int64_t priority() const;
   std::uint64_t drop(Pe& pe) const;  // the collection has ended
 };
-/// A ready PE asks the PEs below it for their reports.
+/// A ready PE asks the PEs below it for their reports, or for their late joins.
 struct ReductionBegin {
   std::uint32_t number = 0;
   Cause cause;
   bool expedites = false;
+  bool counts = false;
   template <class Ar>
   void serialize(Ar& ar) {
-    ar(number, cause, expedites);
+    ar(number, cause, expedites, counts);
   }
   [[nodiscard]] std::int64_t priority() const;
 };
@@ -138,6 +150,9 @@ struct TreeWords {
   std::function<std::string(std::uint32_t)> missing_before;
 };
 
+/// Numbers have 32 bits, and some elements are ahead.
+inline constexpr std::uint32_t most_rounds = ~std::uint32_t{0} - (1U << 20U);
+
 class ReductionTree {
  public:
   /// The part of PE `here` of `n_pes`; `root` completes the reductions.
@@ -151,6 +166,8 @@ class ReductionTree {
   [[nodiscard]] std::uint32_t joins_at() const { return next_report_; }
 
   void add_member(std::uint32_t at) { changes_[at] += 1; }
+  /// An element is inserted from this PE that is a member from this number on.
+  void join(std::uint32_t number, std::string element);
   /// At the root: an element elsewhere joins at the open number, which is returned, and is entered
   /// on its PE with it.
   [[nodiscard]] std::uint32_t admit();
@@ -168,6 +185,12 @@ class ReductionTree {
   /// with the next. The epoch waits for the delivery of the result.
   void contribute(std::uint32_t number, EpochId epoch, std::unique_ptr<Partial> value,
                   const Cause& cause = {}, Newcomer newcomer = {});
+  /// The same of an element that has been entered with its next number. `named`: it names this one.
+  void gather(std::uint32_t number, EpochId epoch, std::unique_ptr<Partial> value,
+              const Cause& cause, Newcomer newcomer, bool named);
+  /// Misuse: the insertion of an element was not awaited, and its first value may be meant for
+  /// another number.
+  [[noreturn]] void refuse_unawaited(const std::string& element, std::int64_t number) const;
 
   /// The contributions to `number` gathered here, if one of this kind and epoch can be added in
   /// place; otherwise null, then call contribute(). After adding, the caller calls added().
@@ -207,6 +230,13 @@ class ReductionTree {
   [[nodiscard]] bool ready(std::uint32_t number) const;
   void report(std::uint32_t number, Gathering&& gathered);
   void complete_if_whole();
+  /// True if all members of a number that is not complete have contributed. `members`: of the number
+  /// before; then of this one.
+  [[nodiscard]] bool is_whole(std::uint32_t number, std::int64_t& members) const;
+  /// At the root: begins to count the late joins, unless a count is under way or would fail.
+  void start_count();
+  void count_joins();
+  void joins_counted();
   void check_newcomer(const Reported& sum) const;
 
   void send_late_change(std::uint32_t number, std::uint32_t joins);
@@ -232,6 +262,9 @@ class ReductionTree {
   LedTo led_to_;
   std::uint64_t awaited_broadcast_ = 0;  // reports wait until this broadcast is applied
   NumberCounts elements_at_;             // counts of local elements by their next number
+  std::uint64_t n_late_joins_ = 0;       // sent from this PE
+  std::uint64_t n_joins_below_ = 0;      // in the subtree, as far as it has been counted
+  std::size_t n_uncounted_ = 0;          // children that have not answered
 
   // At the root: numbers in the order of completion.
   struct Whole : Reported {
@@ -240,6 +273,10 @@ class ReductionTree {
   OpenSums<Whole> whole_;
   std::uint32_t next_complete_ = 0;
   std::int64_t members_ = 0;
+  std::uint64_t n_joined_ = 0;         // late joins received
+  std::uint64_t n_joined_before_ = 0;  // the same at the start of the count
+  std::uint32_t counted_end_ = 0;    // numbers below were whole at the start; 0: none is under way
+  std::uint32_t confirmed_end_ = 0;  // named numbers below may be completed
 };
 
 }  // namespace tess::detail

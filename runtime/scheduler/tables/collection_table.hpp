@@ -29,6 +29,14 @@ class CollectionTable {
   [[nodiscard]] std::unique_ptr<HostedCollection> take_out(CollectionId id);
 
   void keep_early(CollectionId id, Envelope* message) { early_[id].push_back(message); }
+  /// Rounds at which elements join that were inserted from this PE before the collection was known
+  /// here; taken when it is.
+  void keep_early_join(CollectionId id, std::uint32_t round) { early_joins_[id].push_back(round); }
+  [[nodiscard]] std::vector<std::uint32_t> take_early_joins(CollectionId id) {
+    std::vector<std::uint32_t> rounds = std::move(early_joins_[id]);
+    early_joins_.erase(id);
+    return rounds;
+  }
   [[nodiscard]] std::vector<Envelope*> take_all_early();
   /// How many messages wait for which collection.
   [[nodiscard]] std::vector<std::pair<CollectionId, std::size_t>> n_early() const;
@@ -39,6 +47,7 @@ class CollectionTable {
 
   ById<std::unique_ptr<HostedCollection>> collections_;
   ById<std::vector<Envelope*>> early_;
+  ById<std::vector<std::uint32_t>> early_joins_;
 };
 
 }  // namespace tess::detail
