@@ -2,6 +2,7 @@
 // meshes and of fields build on it. The library is not reentrant: one thread at a time.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <exodusII.h>
 #include <optional>
@@ -10,6 +11,17 @@
 #include <vector>
 
 namespace tess::m2m {
+
+/// What a file may have beside its blocks of elements, side sets and node sets. It is skipped, with
+/// its count.
+struct ExodusExtra {
+  ex_inquiry what;
+  const char* name;
+};
+inline constexpr std::array exodus_extras{
+    ExodusExtra{EX_INQ_EDGE_BLK, "edge block"}, ExodusExtra{EX_INQ_FACE_BLK, "face block"},
+    ExodusExtra{EX_INQ_EDGE_SETS, "edge set"}, ExodusExtra{EX_INQ_FACE_SETS, "face set"},
+    ExodusExtra{EX_INQ_ELEM_SETS, "element set"}};
 
 class ExodusFile {
  public:

@@ -45,6 +45,9 @@ class ExodusReader : private ExodusFile {
     for (const std::int64_t block : ids_of(EX_ELEM_BLOCK, n_blocks))
       read_block(mesh, elements, block, ++k);
     elements.finish();
+    for (const auto& [what, name] : exodus_extras)
+      if (const std::int64_t n_extra = inquire(what); n_extra > 0)
+        mesh.skipped.push_back({name, static_cast<std::uint64_t>(n_extra)});
     read_sets(mesh, elements);
     return mesh;
   }

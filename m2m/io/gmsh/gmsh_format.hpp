@@ -6,7 +6,9 @@
 #include "m2m/mesh.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -16,6 +18,16 @@ struct GmshFormat {
   bool legacy = false;  ///< 2.2, otherwise 4.1
   bool binary = false;
 };
+
+/// True for a section without nodes or elements of its own, other than the values that gmsh_fields()
+/// reads. Any other one that the reader of meshes does not know is reported as skipped.
+inline bool gmsh_section_beside_mesh(std::string_view section) {
+  constexpr std::array<std::string_view, 11> beside{
+      "$Comments",      "$ElementData",         "$Entities", "$GhostElements",
+      "$MeshVersion",   "$InterpolationScheme", "$NodeData", "$Parametrizations",
+      "$PhysicalNames", "$PartitionedEntities", "$Periodic"};
+  return std::ranges::find(beside, section) != beside.end();
+}
 
 /// Reads $MeshFormat up to its end; the scanner stands behind the name of the section.
 inline GmshFormat read_gmsh_format(GmshScanner& file) {
@@ -54,6 +66,7 @@ class GmshTagMap {
  public:
   void build(const std::vector<std::uint64_t>& tags, const GmshScanner& file, const char* what) {
     const std::uint64_t last = tags.empty() ? 0 : *std::max_element(tags.begin(), tags.end());
+    sorted_.clear();
     dense_ = last / 4 <= tags.size() + 1024;
     if (dense_) {
       place_.assign(static_cast<std::size_t>(last) + 1, -1);

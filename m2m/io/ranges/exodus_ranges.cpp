@@ -1,6 +1,7 @@
 #include "m2m/io/ranges/exodus_ranges.hpp"
 
 #include "m2m/io/exodus/exodus_elements.hpp"
+#include "m2m/io/exodus/exodus_file.hpp"
 #include "m2m/io/exodus/exodus_turn.hpp"
 #include "m2m/io/exodus/netcdf_header.hpp"
 #include "runtime/core/error.hpp"
@@ -37,6 +38,8 @@ class ExodusRanges final : public MeshRanges {
   /// False if the file cannot be read in ranges.
   bool open(std::int64_t most) {
     if (inquire(EX_INQ_DIM) != 3) return false;
+    for (const ExodusExtra& extra : exodus_extras)
+      if (inquire(extra.what) > 0) return false;
     n_points = inquire(EX_INQ_NODES);
     const std::int64_t n_blocks = inquire(EX_INQ_ELEM_BLK);
     if (n_points > most || n_blocks > most) return false;

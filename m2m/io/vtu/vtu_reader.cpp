@@ -74,7 +74,8 @@ class VtuMeshReader {
   }
 
   void read_points(const VtuPiece& piece) {
-    if (piece.points.empty()) file_.damaged("Points is missing");
+    if (piece.points.size() != 1)
+      file_.damaged("a Piece has ", piece.points.size(), " arrays of Points instead of one");
     const std::vector<double> x = file_.reals(piece.points[0], 3 * piece.n_points);
     for (std::size_t v = 0; v < piece.n_points; ++v)
       mesh_.points.push_back({x[3 * v], x[3 * v + 1], x[3 * v + 2]});

@@ -1,5 +1,6 @@
 // ExodusII files whose parts contradict each other: libexodusII does not notice it.
 #include "m2m/field_file.hpp"
+#include "m2m/io/ranges/mesh_ranges.hpp"
 #include "m2m/kuhn.hpp"
 #include "m2m/read_mesh.hpp"
 #include "m2m/write_exodus.hpp"
@@ -173,4 +174,19 @@ TEST_CASE("polygons and springs of ExodusII are skipped, and solids in one list 
     REQUIRE(nc_put_att_text(file, variable, "elem_type", 4, "TET4") == NC_NOERR);
   });
   CHECK_THAT(refusal_of_file(in_netcdf4), Catch::Contains("variable connect2 has "));
+}
+
+TEST_CASE("edges, faces and sets of elements of an ExodusII file are skipped by name",
+          "[m2m][io]") {
+  const Scratch scratch;
+  const std::string path = two_tets(scratch, 0, [](int file) {
+    int dimension = 0, n = 0;
+    for (const char* name :
+         {"num_ed_blk", "num_fa_blk", "num_edge_sets", "num_face_sets", "num_elem_sets"})
+      REQUIRE(nc_def_dim(file, name, static_cast<std::size_t>(++n), &dimension) == NC_NOERR);
+  });
+  CHECK(skipped_text(read_mesh(path)) ==
+        "1 edge block, 2 face block, 3 edge set, 4 face set, 5 element set");
+  CHECK(open_ranges(path) == nullptr);  // read_mesh() names them
+  CHECK(open_ranges(two_tets(scratch, 0, [](int) {})) != nullptr);
 }

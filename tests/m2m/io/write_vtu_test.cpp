@@ -314,6 +314,16 @@ TEST_CASE("solids of VTU are split, surfaces skipped, pieces joined, and fields 
   CHECK(rho.values[2 * 27 + 1] == 71);
 }
 
+TEST_CASE("a piece of VTU with two arrays of points is refused", "[m2m][io]") {
+  const Scratch scratch;
+  std::string text = vtu_of(cells_of(kuhn_mesh({1})));
+  const std::size_t begin = text.find("<Points>") + 8, end = text.find("</Points>");
+  text.insert(end, text.substr(begin, end - begin));
+  const std::string path = scratch.write("twice.vtu", text);
+  CHECK_THAT(message_of([&] { (void)read_mesh(path); }),
+             Catch::Contains("a Piece has 2 arrays of Points instead of one"));
+}
+
 TEST_CASE("comments and CDATA in VTU are no numbers, and no format", "[m2m][io]") {
   const Scratch scratch;
   const TetMesh mesh = kuhn_mesh({1});
