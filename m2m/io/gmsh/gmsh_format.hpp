@@ -15,7 +15,7 @@
 namespace tess::m2m {
 
 struct GmshFormat {
-  bool legacy = false;  ///< 2.2, otherwise 4.1
+  bool legacy = false;  ///< 2.0 to 2.2, otherwise 4.1
   bool binary = false;
 };
 
@@ -34,10 +34,12 @@ inline GmshFormat read_gmsh_format(GmshScanner& file) {
   const auto version = file.number_as_text<double>();
   const int kind = file.number_as_text<int>();
   const int word_bytes = file.number_as_text<int>();
-  if (version != 2.2 && version != 4.1) {
-    file.refuse("is MSH ", version,
-                "; only 2.2 and 4.1 are supported: convert it with gmsh -save -format msh41");
-  }
+  // 2.0 and 2.1 are laid out as 2.2; their third label of an element is not used.
+  const bool legacy = version == 2 || version == 2.1 || version == 2.2;
+  if (!legacy && version != 4.1)
+    file.refuse(
+        "is MSH ", version,
+        "; only 2.0 to 2.2 and 4.1 are supported: convert it with gmsh -save -format msh41");
   if (kind != 0 && kind != 1) file.damaged("file type ", kind);
   if (word_bytes != 8)
     file.refuse("has numbers of ", word_bytes,
@@ -52,7 +54,7 @@ inline GmshFormat read_gmsh_format(GmshScanner& file) {
     if (one != 1) file.damaged("the byte-order mark is ", one);
   }
   file.close("$EndMeshFormat");
-  return {version == 2.2, kind == 1};
+  return {legacy, kind == 1};
 }
 
 /// The tags of vertices and of elements with a volume, in the order of the file.

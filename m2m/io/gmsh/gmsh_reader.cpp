@@ -57,7 +57,8 @@ class GmshReader {
             "-setnumber Mesh.SaveParametric 0");
       } else if (section == "$NOD" || section == "$ELM") {
         file_.refuse(
-            "is MSH 1; only 2.2 and 4.1 are supported: convert it with gmsh -save -format msh41");
+            "is MSH 1; only 2.0 to 2.2 and 4.1 are supported: convert it with gmsh -save -format "
+            "msh41");
       } else if (section.size() > 1 && section[0] == '$' && section.size() < 64) {
         if (!gmsh_section_beside_mesh(section)) ++n_sections_[section];
         file_.skip_to("$End" + section.substr(1));
@@ -67,6 +68,7 @@ class GmshReader {
     }
     if (!have_nodes) file_.damaged("$Nodes is missing");
     if (!have_elements) file_.damaged("$Elements is missing");
+    if (!tags_known) tags_.build(node_tags_, file_, "node");  // finds tags that occur twice
     for (const GmshElement& type : gmsh_elements) {
       const std::uint64_t n = n_skipped_[static_cast<std::size_t>(type.number)];
       if (n > 0) mesh_.skipped.push_back({std::string(type.name), n});

@@ -85,6 +85,32 @@ TEST_CASE("gmsh files of both versions and modes give the same mesh, also with g
   }
 }
 
+TEST_CASE("MSH 2.0 and 2.1 are read as 2.2, and behind a byte order mark", "[m2m][io]") {
+  const Scratch scratch;
+  const TetMesh mesh = kuhn_mesh({2, 0.1});
+  for (const bool binary : {false, true})
+    for (const char* version : {"2", "2.0", "2.1", "2.2", "4.1"}) {
+      CAPTURE(version, binary);
+      std::string text = as_gmsh(mesh, version[0] == '2', binary, 1);
+      text.replace(text.find('\n') + 1, 3, version);
+      for (const char* mark : {"", "\xEF\xBB\xBF"}) {
+        const std::string path = scratch.write("a.msh", mark + text);
+        const TetMesh read = read_mesh(path);
+        CHECK(read.points == mesh.points);
+        CHECK(read.tets == mesh.tets);
+        const auto ranges = open_ranges(path);
+        CHECK((ranges != nullptr) == (binary && version[0] == '4'));
+        std::vector<Tet> tets(mesh.n_tets());
+        if (ranges != nullptr) ranges->tets(0, tets);
+        if (ranges != nullptr) CHECK(tets == mesh.tets);
+      }
+    }
+  std::string other = as_gmsh(mesh, false, false, 1);
+  other.replace(other.find("4.1"), 3, "4.0");
+  CHECK_THAT(message_of([&] { (void)read_mesh(scratch.write("a.msh", other)); }),
+             Catch::Contains("is MSH 4; only 2.0 to 2.2 and 4.1 are supported"));
+}
+
 TEST_CASE("sections of gmsh that are repeated are all read, and those of other kinds are named",
           "[m2m][io]") {
   const Scratch scratch;
@@ -320,7 +346,7 @@ TEST_CASE("solids of gmsh are split; a tet10 of gmsh has its last two vertices s
   CHECK(split_text(tet10) == "1 TET10 into 8 tetrahedra");
   CHECK_THAT(
       message_of([] { (void)read_gmsh("old", "$NOD\n1\n1 0 0 0\n$ENDNOD\n$ELM\n0\n$ENDELM\n"); }),
-      Catch::Contains("old: is MSH 1; only 2.2 and 4.1 are supported"));
+      Catch::Contains("old: is MSH 1; only 2.0 to 2.2 and 4.1 are supported"));
   for (std::size_t t = 0; t < 8; ++t)
     CHECK(signed_volume(tet10, t) == Approx(1.0 / 48).epsilon(1e-14));
   const TetMesh solids = read_gmsh(
