@@ -72,9 +72,9 @@ class ExodusRanges final : public MeshRanges {
       for (auto& axis : axes) axis.resize(static_cast<std::size_t>(many));
       {
         const ExodusTurn turn;
-        check(ex_get_partial_coord(id_, first + at + 1, many, axes[0].data(), axes[1].data(),
-                                   axes[2].data()),
-              "ex_get_partial_coord");
+        for (std::size_t axis = 0; axis < 3; ++axis)
+          check(read_exodus_axis(id_, axis, first + at, axes[axis]),
+                "nc_get_vara of the coordinates");
       }
       for (std::size_t i = 0; i < static_cast<std::size_t>(many); ++i)
         out[static_cast<std::size_t>(at) + i] = {axes[0][i], axes[1][i], axes[2][i]};

@@ -51,6 +51,32 @@ std::string two_tets(const Scratch& scratch, int mode, const std::function<void(
   return path;
 }
 
+/// A copy in which the k-th variable is the first; none if there are fewer.
+std::string with_first(const Scratch& scratch, const std::string& path, int k) {
+  const std::string name = scratch.path("first.exo");
+  int from = 0, to = 0, n_dimensions = 0, n_variables = 0, n_attributes = 0, records = 0;
+  REQUIRE(nc_open(path.c_str(), NC_NOWRITE, &from) == NC_NOERR);
+  REQUIRE(nc_inq(from, &n_dimensions, &n_variables, &n_attributes, &records) == NC_NOERR);
+  REQUIRE(nc_create(name.c_str(), NC_64BIT_OFFSET, &to) == NC_NOERR);
+  std::array<char, NC_MAX_NAME + 1> text{};
+  for (int i = 0; i < n_dimensions; ++i) {
+    std::size_t length = 0;
+    int same = 0;
+    REQUIRE(nc_inq_dim(from, i, text.data(), &length) == NC_NOERR);
+    REQUIRE(nc_def_dim(to, text.data(), i == records ? NC_UNLIMITED : length, &same) == NC_NOERR);
+  }
+  for (int i = 0; i < n_attributes; ++i) {
+    REQUIRE(nc_inq_attname(from, NC_GLOBAL, i, text.data()) == NC_NOERR);
+    REQUIRE(nc_copy_att(from, NC_GLOBAL, text.data(), to, NC_GLOBAL) == NC_NOERR);
+  }
+  REQUIRE(nc_enddef(to) == NC_NOERR);
+  for (int i = 0; i < n_variables; ++i)
+    REQUIRE(nc_copy_var(from, (i + k) % n_variables, to) == NC_NOERR);
+  nc_close(from);
+  REQUIRE(nc_close(to) == NC_NOERR);
+  return k < n_variables ? name : "";
+}
+
 std::string refusal_of_file(const std::string& path) {
   const std::string message = message_of([&] {
     (void)read_mesh(path);
@@ -189,4 +215,54 @@ TEST_CASE("edges, faces and sets of elements of an ExodusII file are skipped by 
         "1 edge block, 2 face block, 3 edge set, 4 face set, 5 element set");
   CHECK(open_ranges(path) == nullptr);  // read_mesh() names them
   CHECK(open_ranges(two_tets(scratch, 0, [](int) {})) != nullptr);
+}
+
+TEST_CASE(
+    "whichever variable of an ExodusII file is the first, the mesh and its fields are the same",
+    "[m2m][io]") {
+  const Scratch scratch;
+  const TetMesh mesh = kuhn_mesh({2, 0.1});
+  const Field u{"u", 1, std::vector<double>(mesh.n_points(), 3)};
+  const Field rho{"rho", 1, std::vector<double>(mesh.n_tets(), 4)};
+  const std::string path = scratch.path("whole.exo");
+  write_exodus(path, mesh, std::array{u}, std::array{rho});
+  int k = 0;
+  for (std::string copy = with_first(scratch, path, 0); !copy.empty();
+       copy = with_first(scratch, path, ++k)) {
+    CAPTURE(k);
+    const TetMesh read = read_mesh(copy);
+    CHECK(read.points == mesh.points);
+    CHECK(read.tets == mesh.tets);
+    const FieldFile fields(copy);
+    CHECK(fields.vertex_field(read, "u", 0).values == u.values);
+    CHECK(fields.tet_field(read, "rho", 0).values == rho.values);
+    const auto ranges = open_ranges(copy);
+    REQUIRE(ranges != nullptr);
+    std::vector<Point> points(mesh.n_points());
+    ranges->points(0, points);
+    CHECK(points == mesh.points);
+  }
+  CHECK(k > 8);  // also the coordinates, which the library takes for missing then
+}
+
+TEST_CASE("names of an ExodusII file are as long as it has them, and two of a name are refused",
+          "[m2m][io]") {
+  const Scratch scratch;
+  const TetMesh mesh = kuhn_mesh({1});
+  const std::string stem(60, 'n');
+  const auto field = [&](const std::string& name, double value) {
+    return Field{name, 1, std::vector<double>(mesh.n_points(), value)};
+  };
+  const std::string path = scratch.path("long.exo");
+  write_exodus(path, mesh, std::array{field(stem + "1", 1), field(stem + "2", 2)});
+  std::string bytes = slurp(path);
+  const std::string attribute = "maximum_name_length";
+  bytes.replace(bytes.find(attribute), attribute.size(), std::string("m").append(18, 'x'));
+  const FieldFile file(scratch.write("without.exo", bytes));
+  CHECK(file.vertex_field(mesh, stem + "1", 0).values[0] == 1);
+  CHECK(file.vertex_field(mesh, stem + "2", 0).values[0] == 2);
+  bytes.replace(bytes.find(stem + "2"), 61, stem + "1");
+  const FieldFile twice(scratch.write("twice.exo", bytes));
+  CHECK_THAT(message_of([&] { (void)twice.vertex_field(mesh, stem + "1", 0); }),
+             Catch::Contains("there are two variables '" + stem + "1' at vertices"));
 }
