@@ -10,6 +10,7 @@
 
 #include <array>
 #include <exodusII.h>
+#include <fmt/core.h>
 #include <functional>
 #include <netcdf.h>
 #include <vector>
@@ -265,4 +266,24 @@ TEST_CASE("names of an ExodusII file are as long as it has them, and two of a na
   const FieldFile twice(scratch.write("twice.exo", bytes));
   CHECK_THAT(message_of([&] { (void)twice.vertex_field(mesh, stem + "1", 0); }),
              Catch::Contains("there are two variables '" + stem + "1' at vertices"));
+}
+
+TEST_CASE("components that have their letter at the end or in front are one vector", "[m2m][io]") {
+  const Scratch scratch;
+  const std::string path = scratch.path("vectors.exo");
+  const TetMesh mesh = kuhn_mesh({1});
+  std::vector<Field> fields;
+  double value = 0;
+  for (const char* name : {"velocityx", "velocityy", "velocityz", "xforce", "yforce", "zforce",
+                           "X_B", "Y_B", "Z_B", "x", "y", "z", "c", "cx", "cy", "cz"})
+    fields.push_back({name, 1, std::vector<double>(mesh.n_points(), ++value)});
+  write_exodus(path, mesh, fields);
+  const FieldFile file(path);
+  std::string whole;
+  for (const FileField& field : file.fields())
+    if (!field.is_part) whole += fmt::format("{}:{} ", field.name, field.n_components);
+  CHECK(whole == "velocity:3 force:3 B:3 x:1 y:1 z:1 c:1 cx:1 cy:1 cz:1 ");  // c is a scalar
+  const std::vector<double> force = file.vertex_field(mesh, "force", 0).values;
+  CHECK(std::vector<double>(force.begin(), force.begin() + 3) == std::vector<double>{4, 5, 6});
+  CHECK(file.vertex_field(mesh, "yforce", 0).values[0] == 5);
 }
