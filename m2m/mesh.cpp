@@ -1,5 +1,8 @@
 #include "m2m/mesh.hpp"
 
+#include "runtime/core/text.hpp"
+
+#include <algorithm>
 #include <cstddef>
 
 namespace tess::m2m {
@@ -45,6 +48,23 @@ std::string split_text(const TetMesh& mesh) {
              " folded, so that their tetrahedra overlap: check the order of their vertices)";
   }
   return out;
+}
+
+std::string unused_text(std::size_t n_unused, std::size_t n_points) {
+  if (n_unused == 0) return {};
+  return text(n_unused, " of ", n_points, " vertices belong to no element");
+}
+
+std::string coincident_text(const TetMesh& mesh) {
+  std::vector<Point> sorted = mesh.points;
+  std::sort(sorted.begin(), sorted.end());
+  std::size_t n = 0;
+  for (std::size_t i = 0; i < sorted.size(); ++i)
+    if ((i > 0 && sorted[i] == sorted[i - 1]) ||
+        (i + 1 < sorted.size() && sorted[i] == sorted[i + 1]))
+      ++n;
+  if (n == 0) return {};
+  return text(n, " of ", mesh.n_points(), " vertices have the place of another");
 }
 
 }  // namespace tess::m2m

@@ -113,6 +113,13 @@ MeshCensus validate(const TetMesh& mesh);
 /// "27 HEX8 into 162 tetrahedra", and how many are folded; empty if the reader split nothing.
 [[nodiscard]] std::string split_text(const TetMesh& mesh);
 
+/// "24 of 812 vertices belong to no element"; empty if there are none.
+[[nodiscard]] std::string unused_text(std::size_t n_unused, std::size_t n_points);
+
+/// "24 of 812 vertices have the place of another"; empty if there are none. A transfer of the mesh
+/// onto itself does not tell them apart.
+[[nodiscard]] std::string coincident_text(const TetMesh& mesh);
+
 /// The box around all points.
 [[nodiscard]] Aabb bounds(const TetMesh& mesh);
 

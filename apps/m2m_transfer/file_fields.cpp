@@ -334,8 +334,14 @@ TaskOf<FileFieldsReport> move_file_fields(const FileFieldsRequest& request,
   run.options.on_phase = [&progress](const char* name) { progress.phase(name); };
   report.source = request.source;
   report.target = request.target;
-  report.source_elements = {skipped_text(run.source), split_text(run.source)};
-  report.target_elements = {skipped_text(run.target), split_text(run.target)};
+  for (const auto& [mesh, elements] : {std::pair(&run.source, &report.source_elements),
+                                       std::pair(&run.target, &report.target_elements)})
+    *elements = {skipped_text(*mesh),
+                 split_text(*mesh),
+                 unused_text(validate(*mesh).n_unused, mesh->n_points()),
+                 {}};
+  if (request.source == request.target)
+    report.source_elements.coincident = coincident_text(run.source);
   const SourceFields fields(request, run.source);
   if (is_vtu(request.out) && fields.steps().size() > 1)
     fail(ErrorCode::bad_argument, "--out ", request.out, ": VTU holds one step, and there are ",

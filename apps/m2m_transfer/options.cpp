@@ -19,9 +19,10 @@ std::string kind_names() {
 
 void add_options(tess::CommandLine& line, DriverOptions& options, std::string& study) {
   Request& request = options.request;
-  line.option("SOURCE", request.source,
-              "mesh: an ExodusII, gmsh (2.2, 4.1) or VTU file, or kuhn:N, a generated box of 6 N^3 "
-              "tetrahedra");
+  line.option(
+      "SOURCE", request.source,
+      "mesh: an ExodusII, gmsh (2.0 to 2.2, 4.1) or VTU file, or kuhn:N, a generated box of 6 N^3 "
+      "tetrahedra");
   line.option("TARGET", request.target, "mesh of the same kinds");
   line.option("MORE", request.more, "further meshes of the same kinds, for --pairs");
 

@@ -15,10 +15,14 @@
 
 namespace m2m_transfer {
 
-/// Elements of a file that are not tetrahedra.
+/// Elements of a file that are not tetrahedra, and vertices without any.
 struct OtherElements {
   std::string skipped{};  ///< without volume: "120 TRI3"
   std::string split{};    ///< "27 HEX8 into 162 tetrahedra"
+  std::string unused{};   ///< "24 of 812 vertices belong to no element"
+  /// "24 of 812 vertices have the place of another": of the source, in a transfer onto itself. Not
+  /// counted if no process has the whole mesh.
+  std::string coincident{};
 };
 
 /// The cost of a transfer besides time.

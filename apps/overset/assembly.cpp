@@ -17,8 +17,9 @@ using tess::m2m::Aabb;
 using tess::m2m::TetMesh;
 using tess::m2m::Wall;
 
-Wall wall_from_file(const std::string& path) {
+Wall wall_from_file(const std::string& path, std::string& remarks) {
   const tess::dn::Surface surface = apps::read_surface(path);
+  remarks = remarks_text(surface);
   std::vector<Point> points;
   for (const auto& v : surface.vertices) points.push_back({v.x, v.y, v.z});
   std::vector<std::array<VertexId, 3>> triangles;
@@ -104,7 +105,8 @@ Problem read_problem(const Request& request) {
   if (!is_file && boundary.wall.empty())
     tess::fail(tess::ErrorCode::bad_mesh, request.overset,
                " has no cavity, so no wall is found; give --wall a side set or a surface file");
-  problem.wall = is_file ? wall_from_file(request.wall) : Wall(overset.points, boundary.wall);
+  problem.wall = is_file ? wall_from_file(request.wall, problem.wall_remarks)
+                         : Wall(overset.points, boundary.wall);
   return problem;
 }
 

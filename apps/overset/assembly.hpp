@@ -16,6 +16,7 @@ namespace overset {
 struct Problem {
   std::array<tess::m2m::TetMesh, 2> meshes;  ///< background, overset
   tess::m2m::Wall wall;                      ///< of the body
+  std::string wall_remarks{};                ///< of its file
   std::vector<std::uint8_t> on_outer;        ///< per point of the overset mesh
   std::string field = "gaussian";            ///< tess::m2m::make_formula()
   tess::m2m::BlankingOptions options;

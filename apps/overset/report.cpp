@@ -24,6 +24,10 @@ std::string table(const Request& request, const Problem& problem, const Assembly
                                 request.overset, problem.wall.n_triangles());
   if (const auto& rim = problem.wall.rim(); rim.n_edges > 0)
     out += fmt::format(", {} holes capped, {:.2g} of the area", rim.n_loops, rim.cap_share);
+  if (!problem.wall_remarks.empty()) out += fmt::format(" ({})", problem.wall_remarks);
+  for (std::size_t i = 0; i < 2; ++i)
+    if (const std::string skipped = skipped_text(problem.meshes[i]); !skipped.empty())
+      out += fmt::format("\n  skipped in {}: {}", names[i], skipped);
   out += fmt::format("\n  {:<11}{:>9}{:>9}{:>9}{:>9}{:>15}{:>14}{:>11}\n", "", "field", "hole",
                      "fringe", "orphans", "least quality", "full quality", "max error");
   for (std::size_t i = 0; i < 2; ++i) {

@@ -1,6 +1,7 @@
 // The PLY format (Turk, "The PLY polygon file format", 1994): a header that lists elements and
 // their properties, then the elements one after the other, as text or binary. Of the elements,
-// `vertex` (x, y, z) and `face` (a list of vertices) are taken; others are passed over.
+// `vertex` (x, y, z), `face` (a list of vertices) and `tristrips` (likewise; -1 ends a strip) are
+// taken; others are skipped with a remark. What is not used is not read as a number.
 #include "apps/surface_file/formats.hpp"
 #include "runtime/base/open_file.hpp"
 #include "runtime/base/words.hpp"
@@ -10,7 +11,9 @@
 #include <array>
 #include <bit>
 #include <cstring>
+#include <span>
 #include <sstream>
+#include <utility>
 
 namespace apps {
 namespace {
@@ -43,12 +46,14 @@ struct ElementKind {
   std::uint64_t n = 0;
   std::vector<Property> properties;
 };
+constexpr std::string_view blanks = " \t\r\n";
 enum class Encoding : std::uint8_t { ascii, little, big };
 
 class PlyReader {
  public:
   explicit PlyReader(const std::string& path)
-      : path_(path), text_(tess::detail::read_file(path, "a PLY file")) {
+      : path_(path),
+        text_(tess::detail::without_byte_order_mark(tess::detail::read_file(path, "a PLY file"))) {
     read_header();
   }
 
@@ -56,14 +61,18 @@ class PlyReader {
     for (const ElementKind& kind : kinds_) {
       kind_ = &kind;
       if (kind.n > 0 && kind.properties.empty()) refuse("has elements without properties");
-      if (kind.name == "vertex")
+      if (kind.name == "vertex") {
         read_vertices(kind);
-      else if (kind.name == "face")
+      } else if (kind.name == "face" || kind.name == "tristrips") {
         read_faces(kind);
-      else
-        for (number_ = 0; number_ < kind.n; ++number_)
-          for (const Property& property : kind.properties) pass(property);
+      } else {
+        each(kind, [&] { std::ranges::for_each(kind.properties, [&](auto& p) { pass(p); }); });
+        if (kind.n > 0) surface_.remarks["skipped " + kind.name.substr(0, 40)] += kind.n;
+      }
     }
+    // Now all vertices are known: they may stand behind the faces.
+    for (const auto& [begin, n] : polygons_)
+      tess::dn::add_polygon(surface_, std::span(corners_).subspan(begin, n));
     return std::move(surface_);
   }
 
@@ -80,7 +89,7 @@ class PlyReader {
     if (end == std::string::npos) refuse("its header has no end_header; is the file truncated?");
     std::string line = text_.substr(at_, end - at_);
     at_ = end + 1;
-    if (!line.empty() && line.back() == '\r') line.pop_back();
+    while (!line.empty() && tess::detail::is_blank(line.back())) line.pop_back();
     return line;
   }
 
@@ -91,9 +100,8 @@ class PlyReader {
   }
 
   void read_header() {
-    if (!text_.starts_with("ply\n") && !text_.starts_with("ply\r\n"))
+    if (!text_.starts_with("ply") || header_line() != "ply")
       refuse("is not a PLY file: it does not begin with the line 'ply'");
-    header_line();
     for (std::string line = header_line(); line != "end_header"; line = header_line()) {
       std::istringstream words(line);
       std::string word, name;
@@ -126,6 +134,38 @@ class PlyReader {
           refuse("not understood: '", line.substr(0, 80), "'");
         kinds_.back().properties.push_back(property);
       }
+    }
+    line_end_ = text_.size();
+    if (encoding_ == Encoding::ascii) has_rows_ = n_rows() == n_elements();
+  }
+
+  [[nodiscard]] std::uint64_t n_elements() const {
+    std::uint64_t n = 0;
+    for (const ElementKind& kind : kinds_) n += kind.n;
+    return n;
+  }
+  /// The lines behind the header that are not blank.
+  [[nodiscard]] std::uint64_t n_rows() const {
+    std::uint64_t n = 0;
+    for (std::size_t at = text_.find_first_not_of(blanks, at_); at < text_.size();
+         at = text_.find_first_not_of(blanks, text_.find('\n', at)))
+      ++n;
+    return n;
+  }
+
+  /// Calls read() for each element. What stands behind it in its row of text is left out: some
+  /// programs write more numbers than they announce.
+  void each(const ElementKind& kind, const auto& read) {
+    for (number_ = 0; number_ < kind.n; ++number_) {
+      if (has_rows_) {
+        at_ = std::min(text_.find_first_not_of(blanks, at_), text_.size());
+        line_end_ = std::min(text_.find('\n', at_), text_.size());
+      }
+      read();
+      if (!has_rows_) continue;
+      if (text_.find_first_not_of(blanks, at_) < line_end_)
+        ++surface_.remarks["rows with more numbers than the header announces"];
+      at_ = line_end_;
     }
   }
 
@@ -164,15 +204,19 @@ class PlyReader {
     return static_cast<double>(std::bit_cast<T>(bytes));
   }
 
-  double next_word() {
-    constexpr std::string_view blanks = " \t\r\n";
-    at_ = std::min(text_.find_first_not_of(blanks, at_), text_.size());
+  std::string_view take_word() {
+    at_ = std::min(text_.find_first_not_of(blanks, at_), line_end_);
     if (at_ == text_.size()) refuse("the file ends here; it is truncated");
+    if (at_ == line_end_) refuse("its line ends before all that the header announces");
     const std::size_t end = std::min(text_.find_first_of(blanks, at_), text_.size());
     const std::string_view word = std::string_view(text_).substr(at_, end - at_);
+    at_ = end;
+    return word;
+  }
+  double next_word() {
+    const std::string_view word = take_word();
     double value = 0;
     if (!tess::detail::to_number(word, value)) refuse("'", word.substr(0, 40), "' is not a number");
-    at_ = end;
     return value;
   }
 
@@ -185,7 +229,8 @@ class PlyReader {
   }
 
   void pass(const Property& property) {
-    for (std::uint64_t left = next_count(property); left > 0; --left) (void)next(property.type);
+    for (std::uint64_t left = next_count(property); left > 0; --left)
+      encoding_ == Encoding::ascii ? (void)take_word() : (void)next(property.type);
   }
 
   void read_vertices(const ElementKind& kind) {
@@ -193,8 +238,9 @@ class PlyReader {
     for (const std::string_view axis : axes)
       if (std::ranges::find(kind.properties, axis, &Property::name) == kind.properties.end())
         refuse("vertices have no property ", axis);
-    surface_.vertices.reserve(std::min<std::uint64_t>(kind.n, text_.size() / 3));
-    for (number_ = 0; number_ < kind.n; ++number_) {
+    surface_.vertices.reserve(surface_.vertices.size() +
+                              std::min<std::uint64_t>(kind.n, text_.size() / 3));
+    each(kind, [&] {
       tess::dn::Vec3 at{};
       for (const Property& property : kind.properties) {
         double* const to = property.is_list           ? nullptr
@@ -208,7 +254,7 @@ class PlyReader {
           pass(property);
       }
       surface_.vertices.push_back(at);
-    }
+    });
   }
 
   void read_faces(const ElementKind& kind) {
@@ -217,44 +263,65 @@ class PlyReader {
              (property.name == "vertex_indices" || property.name == "vertex_index");
     };
     if (std::ranges::none_of(kind.properties, is_corners))
-      refuse("faces have no list vertex_indices");
-    surface_.triangles.reserve(std::min<std::uint64_t>(kind.n, text_.size() / 4));
-    for (number_ = 0; number_ < kind.n; ++number_)
+      refuse(kind.name == "face" ? "faces" : "strips", " have no list vertex_indices");
+    each(kind, [&] {
       for (const Property& property : kind.properties) {
-        if (is_corners(property))
+        if (!is_corners(property))
+          pass(property);
+        else if (kind.name == "face")
           read_polygon(property);
         else
-          pass(property);
+          read_strips(property);
       }
+    });
+  }
+
+  std::uint32_t corner_of(double v) const {
+    if (!(v >= 0 && v < 4294967296.0) || v != std::floor(v))
+      refuse("vertex ", v, " does not exist");
+    return static_cast<std::uint32_t>(v);
   }
 
   void read_polygon(const Property& property) {
     const std::uint64_t n = next_count(property);
     if (n < 3) refuse("has ", n, " vertices; a face needs three");
-    std::array<std::uint32_t, 3> fan{};
-    for (std::uint64_t i = 0; i < n; ++i) {
+    polygons_.push_back({corners_.size(), n});
+    for (std::uint64_t i = 0; i < n; ++i) corners_.push_back(corner_of(next(property.type)));
+  }
+
+  /// Each vertex of a strip makes a triangle with the two before it, every other one turned round.
+  void read_strips(const Property& property) {
+    std::array<std::uint32_t, 2> last{};
+    std::size_t n_before = 0;
+    for (std::uint64_t left = next_count(property); left > 0; --left) {
       const double v = next(property.type);
-      if (!(v >= 0 && v < 4294967296.0) || v != std::floor(v))
-        refuse("vertex ", v, " does not exist");
-      const auto corner = static_cast<std::uint32_t>(v);
-      if (i < 2) {
-        fan[i] = corner;
+      if (v == -1) {
+        n_before = 0;
         continue;
       }
-      fan[2] = corner;
-      surface_.triangles.push_back(fan);
-      fan[1] = corner;
+      const std::uint32_t corner = corner_of(v);
+      if (n_before >= 2) {
+        const std::size_t first = n_before % 2;
+        polygons_.push_back({corners_.size(), 3});
+        corners_.insert(corners_.end(), {last[first], last[1 - first], corner});
+      }
+      last = {last[1], corner};
+      ++n_before;
     }
   }
 
   const std::string& path_;
   std::string text_;
   std::size_t at_ = 0;
+  std::size_t line_end_ = 0;  // of the row that is read; of the text if it has no rows
+  bool has_rows_ = false;     // a line of text per element
   Encoding encoding_ = Encoding::ascii;
   std::vector<ElementKind> kinds_;
   const ElementKind* kind_ = nullptr;  // that is being read, and the number of its element
   std::uint64_t number_ = 0;
   Surface surface_;
+  std::vector<std::pair<std::size_t, std::size_t>> polygons_;  // first corner and number
+  std::vector<std::uint32_t> corners_;
 };
 
 }  // namespace

@@ -1,6 +1,7 @@
 // Surfaces of triangles from files, for all programs: OBJ, PLY and STL, by the ending of the name.
-// Every face of a file becomes its triangles (polygons become fans), degenerate and duplicate ones
-// included, in the order of the file. No vertex is merged or moved.
+// Every face of a file becomes its triangles (tess::dn::add_polygon), degenerate and duplicate ones
+// included, in the order of the file; Surface::remarks names what is skipped. No vertex is merged or
+// moved.
 //
 // OBJ, PLY (ASCII, binary of either byte order) and STL as text are read in double precision;
 // binary STL holds single precision only. All readers are our own: those of Assimp 5.2 round to

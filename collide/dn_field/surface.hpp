@@ -7,6 +7,8 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -15,6 +17,8 @@ namespace tess::dn {
 struct Surface {
   std::vector<Vec3> vertices;
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< counter-clockwise seen from outside
+  /// How often a file has what is skipped, or is cut in doubt: "polygons that are not flat".
+  std::map<std::string, std::uint64_t> remarks{};
 
   [[nodiscard]] std::array<Vec3, 3> corners(std::size_t triangle) const {
     const auto& t = triangles[triangle];
@@ -67,9 +71,18 @@ struct SurfacePoint {
 [[nodiscard]] SurfacePoint point_on(const Surface& surface, const std::vector<double>& sums,
                                     double first, double second, double third);
 
-/// Reads vertices and faces of a Wavefront OBJ file; polygons become fans, texture and normal
-/// indices are ignored. Coordinates and areas are not checked: validate() does. Throws
-/// Error(bad_file) naming file and line.
+/// Appends the triangles of a polygon with these corners. If the fan from the first corner covers
+/// the polygon, as it does a convex one, it is taken; otherwise ears are cut off. A remark counts
+/// polygons that are not flat, of which the projection is cut, and those that cross themselves,
+/// which become fans. Corners may be missing or not finite, as validate() says.
+void add_polygon(Surface& surface, std::span<const std::uint32_t> corners);
+
+/// "polygons that are not flat: 2, skipped l: 3"; empty if there are none.
+[[nodiscard]] std::string remarks_text(const Surface& surface);
+
+/// Reads vertices and faces of a Wavefront OBJ file; texture and normal indices are ignored, other
+/// elements are skipped with a remark. Coordinates and areas are not checked: validate() does.
+/// Throws Error(bad_file) naming file and line.
 [[nodiscard]] Surface read_obj(const std::string& path);
 
 }  // namespace tess::dn

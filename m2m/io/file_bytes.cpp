@@ -1,5 +1,6 @@
 #include "m2m/io/file_bytes.hpp"
 
+#include "runtime/base/words.hpp"
 #include "runtime/core/error.hpp"
 
 #include <cerrno>
@@ -36,6 +37,7 @@ FileBytes::FileBytes(const std::string& path) {
          std::generic_category().message(error), ")");
   }
   begin_ = static_cast<const char*>(bytes);
+  view_ = tess::detail::without_byte_order_mark({begin_, size_});
 }
 
 FileBytes::~FileBytes() {
@@ -44,6 +46,7 @@ FileBytes::~FileBytes() {
 
 void FileBytes::release(std::size_t begin, std::size_t n) const noexcept {
   const auto page = static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
+  begin += static_cast<std::size_t>(view_.data() - begin_);
   const std::size_t first = begin / page * page;
   ::madvise(const_cast<char*>(begin_) + first, begin + n - first, MADV_DONTNEED);
 }

@@ -1,4 +1,5 @@
-// The bytes of a file, mapped for reading while this object lives. Only the readers use it.
+// The bytes of a file, mapped for reading while this object lives, without a byte order mark. Only the
+// readers use it.
 #pragma once
 
 #include <cstddef>
@@ -16,13 +17,14 @@ class FileBytes {
   FileBytes(const FileBytes&) = delete;
   FileBytes& operator=(const FileBytes&) = delete;
 
-  [[nodiscard]] std::string_view view() const noexcept { return {begin_, size_}; }
+  [[nodiscard]] std::string_view view() const noexcept { return view_; }
   /// The bytes are not needed in memory for now.
   void release(std::size_t begin, std::size_t n) const noexcept;
 
  private:
   const char* begin_ = nullptr;
   std::size_t size_ = 0;
+  std::string_view view_;
 };
 
 }  // namespace tess::m2m

@@ -7,7 +7,6 @@ namespace {
 
 /// True if the first tag of an XML text, behind declarations and comments, is that of VTK.
 bool is_vtk(std::string_view text) {
-  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
   std::size_t at = text.find_first_not_of(" \t\r\n");
   if (at == std::string_view::npos || text[at] != '<') return false;
   while (at != std::string_view::npos) {

@@ -1,4 +1,5 @@
-// The lines of a text, the words of a line, and numbers among them.
+// The lines of a text, the words of a line, and numbers among them. Every reader of text begins with
+// without_byte_order_mark().
 #pragma once
 
 #include <algorithm>
@@ -8,6 +9,12 @@ namespace tess::detail {
 
 [[nodiscard]] constexpr bool is_blank(char c) {
   return c == ' ' || c == '\t' || c == '\r';
+}
+
+/// The text behind the mark of UTF-8 that some editors and programs put in front of it.
+[[nodiscard]] constexpr std::string_view without_byte_order_mark(std::string_view text) {
+  constexpr std::string_view mark = "\xEF\xBB\xBF";
+  return text.starts_with(mark) ? text.substr(mark.size()) : text;
 }
 
 /// Removes the first word of a line, and returns it; empty if there is none.

@@ -1,5 +1,6 @@
 #include "runtime/machine/simulated_options.hpp"
 
+#include "runtime/base/words.hpp"
 #include "runtime/core/error.hpp"
 #include "runtime/core/hash.hpp"
 #include "runtime/core/number.hpp"
@@ -129,7 +130,7 @@ void read_simulated_file(const std::string& path, SimulatedOptions& options) {
          " cannot be opened: give key=value, or a file that bench --calibrate wrote");
   std::size_t number = 0, n_values = 0;
   for (std::string line; std::getline(file, line);) {
-    ++number;
+    if (++number == 1) line = detail::without_byte_order_mark(line);
     line = without_spaces(line);
     if (line.empty() || line.front() == '#') continue;
     const std::string place = text(path, ":", number, ": ");

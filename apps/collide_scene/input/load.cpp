@@ -21,6 +21,8 @@ Scene read_file(const std::string& path) {
   }
   scene.models.assign(scene.triangles.size(), 0);
   scene.description = fmt::format("{}: {} triangles", path, scene.triangles.size());
+  if (!surface.remarks.empty())
+    scene.description.append(" (").append(remarks_text(surface)).append(")");
   return scene;
 }
 

@@ -112,7 +112,9 @@ Replayed replay(const Settings& s) {
   std::vector<tess::balance::Phase> phases =
       tess::balance::read_lb_datafiles(replay_files(s.replay));
   std::map<std::pair<std::string, std::string>, std::size_t> left_out;  // phases per name, reason
+  std::size_t n_communications = 0;
   for (tess::balance::Phase& phase : phases) {
+    n_communications += phase.n_left_out;
     const Snapshot snapshot = prepared(s, std::move(phase.snapshot));
     for (const std::string& name : names) {
       const std::string why = tess::balance::obstacle(name, snapshot);
@@ -135,6 +137,11 @@ Replayed replay(const Settings& s) {
         fmt::format("left out in {} of {} phases: {}: {}\n", n_phases, phases.size(), name, why);
     root["left_out"].push_back({{"strategy", name}, {"phases", n_phases}, {"reason", why}});
   }
+  root["communications_left_out"] = n_communications;
+  if (n_communications > 0)
+    out.table += fmt::format(
+        "left out: {} communications with an entity that is a task in none of the files\n",
+        n_communications);
   out.json = plot::json_text(root, 1);
   return out;
 }

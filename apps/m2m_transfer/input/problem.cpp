@@ -100,8 +100,14 @@ TransferReport report_of(const Problem& problem, const Pair& pair, const Request
   const RunMesh& target = problem.target_of(pair);
   report.source = source.name;
   report.target = target.name;
-  report.source_elements = {source.survey.skipped, source.survey.split};
-  report.target_elements = {target.survey.skipped, target.survey.split};
+  for (const auto& [mesh, elements] : {std::pair(&source.survey, &report.source_elements),
+                                       std::pair(&target.survey, &report.target_elements)})
+    *elements = {mesh->skipped,
+                 mesh->split,
+                 unused_text(mesh->census.n_unused, static_cast<std::size_t>(mesh->n_points)),
+                 {}};
+  if (source.name == target.name && source.mesh)
+    report.source_elements.coincident = coincident_text(*source.mesh);
   report.policy = request.policy;
   report.kind = request.kind;
   report.machine = machine().describe();

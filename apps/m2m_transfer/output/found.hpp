@@ -17,7 +17,9 @@ namespace m2m_transfer {
     const OtherElements& source, const OtherElements& target) {
   std::vector<std::pair<const char*, std::string>> out;
   for (const auto& [title, part] :
-       {std::pair("skipped", &OtherElements::skipped), std::pair("split", &OtherElements::split)})
+       {std::pair("skipped", &OtherElements::skipped), std::pair("split", &OtherElements::split),
+        std::pair("unused", &OtherElements::unused),
+        std::pair("coincident", &OtherElements::coincident)})
     for (const auto& [side, elements] :
          {std::pair("in the source: ", &source), std::pair("in the target: ", &target)})
       if (!(elements->*part).empty()) out.emplace_back(title, side + elements->*part);
@@ -26,7 +28,9 @@ namespace m2m_transfer {
 
 [[nodiscard]] inline plot::Json json_of(const OtherElements& source, const OtherElements& target) {
   return {{"skipped", {{"source", source.skipped}, {"target", target.skipped}}},
-          {"split", {{"source", source.split}, {"target", target.split}}}};
+          {"split", {{"source", source.split}, {"target", target.split}}},
+          {"unused", {{"source", source.unused}, {"target", target.unused}}},
+          {"coincident", source.coincident}};
 }
 
 [[nodiscard]] inline std::string found_text(const std::array<std::uint64_t, 4>& counts) {

@@ -80,6 +80,9 @@ Json document(const Scene& scene, const RunResult& result, const Report& report)
       out["thin"][fmt::format("objects[{}]", i)] =
           fmt::format("{:.2g} % of it is thinner than {:.3g}: particles may pass there",
                       100 * share, least_wall(scene.rules, scene.objects[i]));
+  for (std::size_t i = 0; i < scene.objects.size(); ++i)
+    if (const auto& surface = scene.objects[i].surface; !surface.remarks.empty())
+      out["surface"][fmt::format("objects[{}]", i)] = remarks_text(surface);
   out["nonfinite"] = end.nonfinite;
   if (begin.inside != 0) {
     out["began_inside"] = begin.inside;

@@ -30,6 +30,15 @@ bool read_line(std::istream& file, std::string& line) {
   return !line.empty();
 }
 
+// The keywords of OBJ beside v and f: elements, and what describes them.
+constexpr std::array<std::string_view, 10> elements{"p",   "l",   "curv", "curv2", "surf",
+                                                    "bzp", "bsp", "cdc",  "cdp",   "call"};
+constexpr std::array<std::string_view, 32> attributes{
+    "vt",     "vn",         "vp",        "g",      "s",        "o",        "mg",   "usemtl",
+    "mtllib", "usemap",     "maplib",    "bevel",  "c_interp", "d_interp", "lod",  "ctech",
+    "stech",  "shadow_obj", "trace_obj", "cstype", "deg",      "bmat",     "step", "parm",
+    "trim",   "hole",       "scrv",      "sp",     "end",      "con",      "res",  "csh"};
+
 /// Whether a file begins with bytes that no text has.
 bool is_binary(std::istream& file) {
   std::array<char, 1024> bytes{};
@@ -45,7 +54,7 @@ bool next_line(std::istream& file, std::string& line, std::size_t& number) {
   std::string part;
   for (bool more = true; more;) {
     if (!read_line(file, part)) return !line.empty();
-    if (++number == 1 && part.starts_with("\xEF\xBB\xBF")) part.erase(0, 3);  // a byte order mark
+    if (++number == 1) part = tess::detail::without_byte_order_mark(part);
     part.resize(std::min(part.find('#'), part.size()));
     while (!part.empty() && tess::detail::is_blank(part.back())) part.pop_back();
     more = part.ends_with('\\');
@@ -166,6 +175,7 @@ Surface welded(const Surface& surface) {
   };
   std::sort(order.begin(), order.end(), [&](auto a, auto b) { return key(a) < key(b); });
   Surface result;
+  result.remarks = surface.remarks;
   for (const std::uint32_t v : order) {
     const Vec3 p = surface.vertices[v];
     if (result.vertices.empty() || !(result.vertices.back() == p)) result.vertices.push_back(p);
@@ -196,13 +206,16 @@ Surface read_obj(const std::string& path) {
     const std::string_view keyword = take_word(rest);
     if (keyword == "v") {
       surface.vertices.push_back(vertex(rest, place));
-    } else if (keyword == "f") {
+    } else if (keyword == "f" || keyword == "fo") {  // fo: of version 2
       std::vector<std::uint32_t> polygon;
       for (std::string_view word = take_word(rest); !word.empty(); word = take_word(rest))
         polygon.push_back(face_vertex(word, surface.vertices.size(), place));
       if (polygon.size() < 3) fail(ErrorCode::bad_file, place(), ": a face needs three vertices");
-      for (std::size_t i = 2; i < polygon.size(); ++i)
-        surface.triangles.push_back({polygon[0], polygon[i - 1], polygon[i]});
+      add_polygon(surface, polygon);
+    } else if (std::ranges::find(elements, keyword) != elements.end()) {
+      ++surface.remarks[text("skipped ", keyword)];
+    } else if (!keyword.empty() && std::ranges::find(attributes, keyword) == attributes.end()) {
+      ++surface.remarks["skipped lines of no known keyword"];
     }
   }
   if (surface.triangles.empty())

@@ -14,8 +14,8 @@
 namespace tess::m2m {
 namespace {
 
-/// Nodal and element variables. A variable is a scalar. NAME_x, NAME_y and NAME_z in a row are also
-/// one field of three components, NAME, as ParaView shows them.
+/// Nodal and element variables. A variable is a scalar. NAME_x, NAME_y and NAME_z in a row, and the
+/// like, are also one field of three components, NAME, as ParaView shows them.
 class ExodusFields : public FieldReader, private ExodusFile {
  public:
   ExodusFields(const std::string& path, std::string_view bytes) : ExodusFile(path, bytes) {
@@ -76,18 +76,26 @@ class ExodusFields : public FieldReader, private ExodusFile {
   }
   static std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-  /// The name of the vector of which this variable and the next two are the components.
+  /// The name of the vector of which this variable and the next two are the components: they differ
+  /// in an x, y, z at the end or the beginning, as VELOCITY_X, velocityx and xvelocity do.
   static std::optional<std::string> vector_at(const std::vector<std::string>& names, int first) {
     if (at(first) + 3 > names.size()) return std::nullopt;
-    const std::string stem = names[at(first)].substr(0, names[at(first)].size() - 1);
-    if (stem.size() < 2 || stem.back() != '_') return std::nullopt;
-    for (int c = 0; c < 3; ++c) {
-      const std::string& name = names[at(first + c)];
-      if (name.size() != stem.size() + 1 || !name.starts_with(stem) ||
-          std::tolower(static_cast<unsigned char>(name.back())) != "xyz"[c])
-        return std::nullopt;
+    for (const bool at_end : {true, false}) {
+      const auto stem_of = [&](int c) -> std::optional<std::string> {
+        std::string name = names[at(first + c)];
+        if (!at_end) std::ranges::reverse(name);
+        if (name.empty() || std::tolower(static_cast<unsigned char>(name.back())) != "xyz"[c])
+          return std::nullopt;
+        name.pop_back();
+        if (name.ends_with('_')) name.pop_back();
+        if (!at_end) std::ranges::reverse(name);
+        return name;
+      };
+      const auto x = stem_of(0), y = stem_of(1), z = stem_of(2);
+      const bool agree = x && x == y && y == z && !x->empty();
+      if (agree && std::ranges::find(names, *x) == names.end()) return x;
     }
-    return stem.substr(0, stem.size() - 1);
+    return std::nullopt;
   }
 
   /// Reads the n values of a variable in a block, or at all nodes.

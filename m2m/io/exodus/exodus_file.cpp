@@ -44,6 +44,20 @@ class Silence {
 
 }  // namespace
 
+int read_exodus_axis(int id, std::size_t axis, std::int64_t first, std::span<double> out) {
+  constexpr std::array names{"coordx", "coordy", "coordz"};
+  std::array<std::size_t, 2> start{axis, static_cast<std::size_t>(first)}, count{1, out.size()};
+  int variable = 0, rank = 0;
+  const bool apart = nc_inq_varid(id, names[axis], &variable) == NC_NOERR;
+  if (!apart)  // old files have one list
+    if (const int code = nc_inq_varid(id, "coord", &variable); code != NC_NOERR) return code;
+  if (const int code = nc_inq_varndims(id, variable, &rank); code != NC_NOERR) return code;
+  if (rank != (apart ? 1 : 2)) return NC_EINVALCOORDS;
+  const std::size_t skipped = apart ? 1 : 0;
+  return nc_get_vara_double(id, variable, start.data() + skipped, count.data() + skipped,
+                            out.data());
+}
+
 ExodusFile::ExodusFile(const std::string& path, std::string_view bytes)
     : path_(path),
       most_(static_cast<std::int64_t>(
@@ -89,8 +103,13 @@ std::int64_t ExodusFile::count(int what, const char* name) const {
 
 void ExodusFile::set_name_length() const {
   constexpr std::int64_t longest = 255;
-  const std::int64_t used = ex_inquire_int(id_, EX_INQ_DB_MAX_USED_NAME_LENGTH);
-  ex_set_max_name_length(id_, static_cast<int>(std::clamp<std::int64_t>(used, 32, longest)));
+  // The attribute maximum_name_length would have the length in use, but many writers leave it out.
+  int dimension = 0;
+  std::size_t length = 0;  // with a null byte
+  if (nc_inq_dimid(id_, "len_name", &dimension) == NC_NOERR)
+    check(nc_inq_dimlen(id_, dimension, &length), "nc_inq_dimlen");
+  const auto n = static_cast<std::int64_t>(std::min<std::size_t>(length, longest + 1)) - 1;
+  ex_set_max_name_length(id_, static_cast<int>(std::max<std::int64_t>(n, 32)));
 }
 
 std::vector<std::int64_t> ExodusFile::ids_of(ex_entity_type type, std::int64_t n) const {

@@ -2,14 +2,33 @@
 // meshes and of fields build on it. The library is not reentrant: one thread at a time.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <exodusII.h>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace tess::m2m {
+
+/// What a file may have beside its blocks of elements, side sets and node sets. It is skipped, with
+/// its count.
+struct ExodusExtra {
+  ex_inquiry what;
+  const char* name;
+};
+inline constexpr std::array exodus_extras{
+    ExodusExtra{EX_INQ_EDGE_BLK, "edge block"}, ExodusExtra{EX_INQ_FACE_BLK, "face block"},
+    ExodusExtra{EX_INQ_EDGE_SETS, "edge set"}, ExodusExtra{EX_INQ_FACE_SETS, "face set"},
+    ExodusExtra{EX_INQ_ELEM_SETS, "element set"}};
+
+/// Reads coordinates of the nodes from `first` on, counted from 0, into `out`. Returns a code of
+/// NetCDF. The library's own calls (6.02) take a variable that is the file's first for missing, and
+/// give zeros.
+[[nodiscard]] int read_exodus_axis(int id, std::size_t axis, std::int64_t first,
+                                   std::span<double> out);
 
 class ExodusFile {
  public:
@@ -33,7 +52,7 @@ class ExodusFile {
   /// No count in the file exceeds this: its size in NetCDF-3. Compressed NetCDF-4 holds more than
   /// its size shows, but never 1 000 times more.
   [[nodiscard]] std::int64_t most() const noexcept { return most_; }
-  /// Without this call the library cuts names to 32 characters.
+  /// Without this call the library cuts names to 32 characters, also those of files that have more.
   void set_name_length() const;
   /// The numbers of the blocks or sets in file order. Throws if a number occurs twice.
   [[nodiscard]] std::vector<std::int64_t> ids_of(ex_entity_type type, std::int64_t n) const;

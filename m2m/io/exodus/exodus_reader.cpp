@@ -45,19 +45,21 @@ class ExodusReader : private ExodusFile {
     for (const std::int64_t block : ids_of(EX_ELEM_BLOCK, n_blocks))
       read_block(mesh, elements, block, ++k);
     elements.finish();
+    for (const auto& [what, name] : exodus_extras)
+      if (const std::int64_t n_extra = inquire(what); n_extra > 0)
+        mesh.skipped.push_back({name, static_cast<std::uint64_t>(n_extra)});
     read_sets(mesh, elements);
     return mesh;
   }
 
  private:
   void read_points(TetMesh& mesh, std::int64_t n) const {
-    std::array<std::vector<double>, 3> axes;
-    for (auto& axis : axes) axis.resize(static_cast<std::size_t>(n));
-    check(ex_get_n_coord(id_, 1, n, axes[0].data(), axes[1].data(), axes[2].data()),
-          "ex_get_coord");
     mesh.points.resize(static_cast<std::size_t>(n));
-    for (std::size_t i = 0; i < mesh.points.size(); ++i)
-      mesh.points[i] = {axes[0][i], axes[1][i], axes[2][i]};
+    std::vector<double> values(mesh.n_points());
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      check(read_exodus_axis(id_, axis, 0, values), "nc_get_vara of the coordinates");
+      for (std::size_t i = 0; i < values.size(); ++i) mesh.points[i][axis] = values[i];
+    }
   }
 
   /// The library numbers the variables of blocks, and of sets, by their place `k`, from 1 on.

@@ -88,6 +88,10 @@ Field FieldFile::read(const TetMesh& mesh, std::string_view name, FieldPlace pla
          "; it has: ", names_of(fields(), place), " (", text_of(other), ": ",
          names_of(fields(), other), "); ", steps_of(times()));
   }
+  for (std::size_t other = at + 1; other < fields().size(); ++other)
+    if (fields()[other].place == place && fields()[other].name == name)
+      fail(ErrorCode::bad_value, path, ": there are two variables '", name, "' ", text_of(place),
+           "; give each a name of its own");
   if (step >= n_steps())
     fail(ErrorCode::bad_value, path, ": variable '", name, "' has no step ", step,
          "; the file has ", steps_of(times()));

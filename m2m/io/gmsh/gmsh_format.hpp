@@ -6,26 +6,40 @@
 #include "m2m/mesh.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 namespace tess::m2m {
 
 struct GmshFormat {
-  bool legacy = false;  ///< 2.2, otherwise 4.1
+  bool legacy = false;  ///< 2.0 to 2.2, otherwise 4.1
   bool binary = false;
 };
+
+/// True for a section without nodes or elements of its own, other than the values that gmsh_fields()
+/// reads. Any other one that the reader of meshes does not know is reported as skipped.
+inline bool gmsh_section_beside_mesh(std::string_view section) {
+  constexpr std::array<std::string_view, 11> beside{
+      "$Comments",      "$ElementData",         "$Entities", "$GhostElements",
+      "$MeshVersion",   "$InterpolationScheme", "$NodeData", "$Parametrizations",
+      "$PhysicalNames", "$PartitionedEntities", "$Periodic"};
+  return std::ranges::find(beside, section) != beside.end();
+}
 
 /// Reads $MeshFormat up to its end; the scanner stands behind the name of the section.
 inline GmshFormat read_gmsh_format(GmshScanner& file) {
   const auto version = file.number_as_text<double>();
   const int kind = file.number_as_text<int>();
   const int word_bytes = file.number_as_text<int>();
-  if (version != 2.2 && version != 4.1) {
-    file.refuse("is MSH ", version,
-                "; only 2.2 and 4.1 are supported: convert it with gmsh -save -format msh41");
-  }
+  // 2.0 and 2.1 are laid out as 2.2; their third label of an element is not used.
+  const bool legacy = version == 2 || version == 2.1 || version == 2.2;
+  if (!legacy && version != 4.1)
+    file.refuse(
+        "is MSH ", version,
+        "; only 2.0 to 2.2 and 4.1 are supported: convert it with gmsh -save -format msh41");
   if (kind != 0 && kind != 1) file.damaged("file type ", kind);
   if (word_bytes != 8)
     file.refuse("has numbers of ", word_bytes,
@@ -40,7 +54,7 @@ inline GmshFormat read_gmsh_format(GmshScanner& file) {
     if (one != 1) file.damaged("the byte-order mark is ", one);
   }
   file.close("$EndMeshFormat");
-  return {version == 2.2, kind == 1};
+  return {legacy, kind == 1};
 }
 
 /// The tags of vertices and of elements with a volume, in the order of the file.
@@ -54,6 +68,7 @@ class GmshTagMap {
  public:
   void build(const std::vector<std::uint64_t>& tags, const GmshScanner& file, const char* what) {
     const std::uint64_t last = tags.empty() ? 0 : *std::max_element(tags.begin(), tags.end());
+    sorted_.clear();
     dense_ = last / 4 <= tags.size() + 1024;
     if (dense_) {
       place_.assign(static_cast<std::size_t>(last) + 1, -1);

@@ -1,5 +1,6 @@
 #include "m2m/io/gmsh/gmsh_reader.hpp"
 
+#include "m2m/io/field_reader.hpp"
 #include "m2m/io/gmsh/gmsh_elements.hpp"
 #include "m2m/io/gmsh/gmsh_format.hpp"
 #include "m2m/io/gmsh/gmsh_scanner.hpp"
@@ -8,6 +9,7 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <span>
 #include <utility>
 #include <vector>
@@ -23,8 +25,8 @@ class GmshReader {
   }
 
   TetMesh read() {
-    bool have_nodes = false;
-    bool have_elements = false;
+    bool have_nodes = false, have_elements = false;
+    bool tags_known = false;  // sections may be repeated
     for (file_.skip_blanks(); !file_.at_end(); file_.skip_blanks()) {
       const std::string section(file_.word());
       if (section == "$MeshFormat") {
@@ -32,17 +34,18 @@ class GmshReader {
         legacy_ = format.legacy;
         binary_ = format.binary;
         have_format_ = true;
-      } else if (section == "$Nodes" && !have_nodes) {
+      } else if (section == "$Nodes") {
         need_format();
         file_.set_binary(binary_);
         legacy_ ? nodes_22() : nodes_41();
         file_.set_binary(false);
         file_.close("$EndNodes");
-        tags_.build(node_tags_, file_, "node");
         have_nodes = true;
-      } else if (section == "$Elements" && !have_elements) {
+        tags_known = false;
+      } else if (section == "$Elements") {
         need_format();
         if (!have_nodes) file_.damaged("$Elements before $Nodes");
+        if (!std::exchange(tags_known, true)) tags_.build(node_tags_, file_, "node");
         file_.set_binary(binary_);
         legacy_ ? elements_22() : elements_41();
         file_.set_binary(false);
@@ -52,10 +55,12 @@ class GmshReader {
         file_.refuse(
             "has $ParametricNodes; only $Nodes are supported: save it with "
             "-setnumber Mesh.SaveParametric 0");
-      } else if (section == "$NOD") {
+      } else if (section == "$NOD" || section == "$ELM") {
         file_.refuse(
-            "is MSH 1; only 2.2 and 4.1 are supported: convert it with gmsh -save -format msh41");
+            "is MSH 1; only 2.0 to 2.2 and 4.1 are supported: convert it with gmsh -save -format "
+            "msh41");
       } else if (section.size() > 1 && section[0] == '$' && section.size() < 64) {
+        if (!gmsh_section_beside_mesh(section)) ++n_sections_[section];
         file_.skip_to("$End" + section.substr(1));
       } else {
         file_.damaged("expected a section such as $Nodes");
@@ -63,10 +68,13 @@ class GmshReader {
     }
     if (!have_nodes) file_.damaged("$Nodes is missing");
     if (!have_elements) file_.damaged("$Elements is missing");
+    if (!tags_known) tags_.build(node_tags_, file_, "node");  // finds tags that occur twice
     for (const GmshElement& type : gmsh_elements) {
       const std::uint64_t n = n_skipped_[static_cast<std::size_t>(type.number)];
       if (n > 0) mesh_.skipped.push_back({std::string(type.name), n});
     }
+    for (const auto& [section, n] : n_sections_)
+      mesh_.skipped.push_back({"section " + clean_name(section), n});
     elements_.finish();
     if (tags_out_ != nullptr) {
       tags_out_->nodes = std::move(node_tags_);
@@ -81,11 +89,12 @@ class GmshReader {
   }
 
   void start_nodes(std::size_t n) {
-    if (n > static_cast<std::size_t>(std::numeric_limits<VertexId>::max())) {
-      file_.refuse("has ", n, " vertices; at most 2147483647 fit in one mesh, split it");
+    const std::size_t all = mesh_.n_points() + n;
+    if (all > static_cast<std::size_t>(std::numeric_limits<VertexId>::max())) {
+      file_.refuse("has ", all, " vertices; at most 2147483647 fit in one mesh, split it");
     }
-    mesh_.points.reserve(n);
-    node_tags_.reserve(n);
+    mesh_.points.reserve(all);
+    node_tags_.reserve(all);
   }
 
   Point point() {
@@ -119,6 +128,7 @@ class GmshReader {
     const auto n = file_.count<std::uint64_t>("nodes", 32);
     file_.skip<std::uint64_t>(2);  // least and greatest tag
     start_nodes(n);
+    const std::size_t end = mesh_.n_points() + n;
     for (std::size_t block = 0; block < n_blocks; ++block) {
       const int dimension = file_.number<int>();
       file_.skip<int>(1);  // entity
@@ -127,15 +137,15 @@ class GmshReader {
       if (dimension < 0 || dimension > 3 || (parametric != 0 && parametric != 1)) {
         file_.damaged("a block of nodes of dimension ", dimension, ", parametric ", parametric);
       }
-      if (m > n - mesh_.points.size()) file_.damaged("more nodes than the ", n, " announced");
+      if (m > end - mesh_.n_points()) file_.damaged("more nodes than the ", n, " announced");
       for (std::size_t i = 0; i < m; ++i) node_tags_.push_back(file_.number<std::uint64_t>());
       for (std::size_t i = 0; i < m; ++i) {
         mesh_.points.push_back(point());
         if (parametric == 1) file_.skip<double>(static_cast<std::size_t>(dimension));
       }
     }
-    if (mesh_.points.size() != n)
-      file_.damaged(n, " nodes announced, ", mesh_.points.size(), " found");
+    if (mesh_.n_points() != end)
+      file_.damaged(n, " nodes announced, ", n - (end - mesh_.n_points()), " found");
   }
 
   /// The type with this number. Refuses unknown types and volume elements that are not supported.
@@ -255,9 +265,10 @@ class GmshReader {
   std::vector<std::uint64_t> node_tags_;
   GmshTagMap tags_;
   GmshTags* tags_out_;
-  Volume last_volume_;                          // of version 2.2
-  std::vector<std::uint64_t> volume_tags_;      // if they are asked for
-  std::array<std::uint64_t, 128> n_skipped_{};  // per type number
+  Volume last_volume_;                               // of version 2.2
+  std::vector<std::uint64_t> volume_tags_;           // if they are asked for
+  std::array<std::uint64_t, 128> n_skipped_{};       // per type number
+  std::map<std::string, std::uint64_t> n_sections_;  // that are skipped
   bool have_format_ = false;
   bool legacy_ = false;
   bool binary_ = false;

@@ -1,5 +1,6 @@
-// Reads the tetrahedra of a gmsh file, MSH 2.2 or 4.1, ASCII or binary. Points, lines and surfaces
-// are skipped and counted. Every count is checked against the remaining bytes before memory is
+// Reads the tetrahedra of a gmsh file, MSH 2.0 to 2.2 or 4.1, ASCII or binary. Points, lines and surfaces
+// are skipped and counted, as are sections that may hold a part of the mesh. $Nodes and $Elements may
+// be repeated. Every count is checked against the remaining bytes before memory is
 // allocated, so a damaged file gives one line of error.
 #pragma once
 

@@ -1,6 +1,7 @@
 #include "m2m/io/ranges/exodus_ranges.hpp"
 
 #include "m2m/io/exodus/exodus_elements.hpp"
+#include "m2m/io/exodus/exodus_file.hpp"
 #include "m2m/io/exodus/exodus_turn.hpp"
 #include "m2m/io/exodus/netcdf_header.hpp"
 #include "runtime/core/error.hpp"
@@ -37,6 +38,8 @@ class ExodusRanges final : public MeshRanges {
   /// False if the file cannot be read in ranges.
   bool open(std::int64_t most) {
     if (inquire(EX_INQ_DIM) != 3) return false;
+    for (const ExodusExtra& extra : exodus_extras)
+      if (inquire(extra.what) > 0) return false;
     n_points = inquire(EX_INQ_NODES);
     const std::int64_t n_blocks = inquire(EX_INQ_ELEM_BLK);
     if (n_points > most || n_blocks > most) return false;
@@ -69,9 +72,9 @@ class ExodusRanges final : public MeshRanges {
       for (auto& axis : axes) axis.resize(static_cast<std::size_t>(many));
       {
         const ExodusTurn turn;
-        check(ex_get_partial_coord(id_, first + at + 1, many, axes[0].data(), axes[1].data(),
-                                   axes[2].data()),
-              "ex_get_partial_coord");
+        for (std::size_t axis = 0; axis < 3; ++axis)
+          check(read_exodus_axis(id_, axis, first + at, axes[axis]),
+                "nc_get_vara of the coordinates");
       }
       for (std::size_t i = 0; i < static_cast<std::size_t>(many); ++i)
         out[static_cast<std::size_t>(at) + i] = {axes[0][i], axes[1][i], axes[2][i]};

@@ -2,7 +2,7 @@
 
 #include "m2m/io/file_bytes.hpp"
 #include "m2m/io/gmsh/gmsh_elements.hpp"
-#include "m2m/io/gmsh/gmsh_scanner.hpp"
+#include "m2m/io/gmsh/gmsh_format.hpp"
 
 #include <algorithm>
 #include <array>
@@ -29,10 +29,10 @@ class GmshRanges final : public MeshRanges {
       } else if (section == "$Elements" && !have_elements && have_nodes) {
         if (!binary_section([this] { return elements(); }, "$EndElements")) return false;
         have_elements = true;
-      } else if (section.size() > 1 && section[0] == '$' && section.size() < 64) {
+      } else if (gmsh_section_beside_mesh(section)) {
         at_.skip_to("$End" + section.substr(1));
       } else {
-        return false;
+        return false;  // such as a second $Nodes
       }
     }
     for (const GmshElement& type : gmsh_elements) {

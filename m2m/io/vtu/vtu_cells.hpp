@@ -67,9 +67,21 @@ constexpr const VtuCell* vtu_cell(std::int64_t number) {
   return nullptr;
 }
 
-/// The volume element of a type, if it is supported. A voxel is a hexahedron in another order.
-constexpr std::optional<ElementType> vtu_volume(std::int64_t number) {
+/// The volume element of a type with this number of vertices, if it is supported. A voxel is a
+/// hexahedron in another order. Lagrange cells of degree 1, and Lagrange
+/// tetrahedra of degree 2, have the points of the other types in the same order.
+constexpr std::optional<ElementType> vtu_volume(std::int64_t number, std::size_t n_vertices) {
   switch (number) {
+    case 71:
+      return n_vertices == 4    ? std::optional(ElementType::tet4)
+             : n_vertices == 10 ? std::optional(ElementType::tet10)
+                                : std::nullopt;
+    case 72:
+      return n_vertices == 8 ? std::optional(ElementType::hex8) : std::nullopt;
+    case 73:
+      return n_vertices == 6 ? std::optional(ElementType::wedge6) : std::nullopt;
+    case 74:
+      return n_vertices == 5 ? std::optional(ElementType::pyramid5) : std::nullopt;
     case 10:
       return ElementType::tet4;
     case 11:
@@ -84,6 +96,12 @@ constexpr std::optional<ElementType> vtu_volume(std::int64_t number) {
     default:
       return std::nullopt;
   }
+}
+
+/// True for solids, supported or not.
+constexpr bool vtu_has_volume(std::int64_t number) {
+  const VtuCell* const cell = vtu_cell(number);
+  return cell != nullptr && cell->dimension == 3;
 }
 
 }  // namespace tess::m2m

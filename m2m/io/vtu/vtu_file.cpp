@@ -9,8 +9,10 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <filesystem>
 #include <optional>
 #include <type_traits>
+#include <utility>
 
 namespace tess::m2m {
 namespace {
@@ -131,7 +133,7 @@ void VtuFile::read_root(const XmlTag& tag) {
   const std::string type = tag.attribute("type").value_or("");
   if (type != "UnstructuredGrid")
     fail(ErrorCode::bad_mesh, path_, ": holds a VTK ", printable(type),
-         "; only UnstructuredGrid (.vtu) is supported: convert it");
+         "; only UnstructuredGrid (.vtu, .pvtu) is supported: convert it");
   encoding_.big_endian = tag.attribute("byte_order").value_or("") == "BigEndian";
   encoding_.header_bytes = tag.attribute("header_type").value_or("") == "UInt64" ? 8 : 4;
   const std::string compressor = tag.attribute("compressor").value_or("");
@@ -172,6 +174,31 @@ bool VtuFile::read_appended(const XmlTag& tag, std::string_view bytes) {
     damaged("AppendedData has no end");
   appended_ = bytes.substr(begin + 1, end - begin - 1);
   return bytes.substr(end).find("</VTKFile>") != std::string_view::npos;
+}
+
+std::vector<OpenVtuFile> open_vtu_files(const std::string& path, std::string_view bytes) {
+  std::vector<OpenVtuFile> out;
+  XmlScanner xml(bytes);
+  bool is_index = false, is_complete = false;
+  while (const auto tag = xml.next()) {
+    const bool opens = tag->kind != XmlTag::Kind::close;
+    if (tag->name == "VTKFile" && opens)
+      is_index = tag->attribute("type").value_or("") == "PUnstructuredGrid";
+    if (!is_index) break;
+    is_complete = is_complete || (tag->name == "VTKFile" && !opens);
+    if (tag->name != "Piece" || !opens) continue;
+    const std::string source = tag->attribute("Source").value_or("");
+    const std::string part =
+        (std::filesystem::path(path).parent_path() / source).lexically_normal().string();
+    auto content = std::make_unique<FileBytes>(part);
+    auto file = std::make_unique<VtuFile>(part, content->view());
+    out.push_back({std::move(content), std::move(file)});
+  }
+  if (is_index && (!is_complete || out.empty()))
+    fail(ErrorCode::bad_file, path, ": is truncated or damaged (",
+         is_complete ? "it names no Piece" : "</VTKFile> is missing", "); write the mesh again");
+  if (!is_index) out.push_back({nullptr, std::make_unique<VtuFile>(path, bytes)});
+  return out;
 }
 
 const VtuArray& VtuFile::array(const std::vector<VtuArray>& arrays, std::string_view name) const {

@@ -3,12 +3,14 @@
 // order, and compressed by zlib; other compressors are refused by name.
 #pragma once
 
+#include "m2m/io/file_bytes.hpp"
 #include "m2m/io/vtu/vtu_data.hpp"
 #include "runtime/core/error.hpp"
 
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -32,10 +34,11 @@ struct XmlTag;
 
 class VtuFile {
  public:
-  /// Reads the list of arrays. `path` and `bytes`, its content, must outlive the object. Throws
+  /// Reads the list of arrays. `bytes`, the content at `path`, must outlive the object. Throws
   /// Error (bad_file) if the file is truncated or damaged or of another kind.
   VtuFile(const std::string& path, std::string_view bytes);
 
+  [[nodiscard]] const std::string& path() const noexcept { return path_; }
   [[nodiscard]] const std::vector<VtuPiece>& pieces() const noexcept { return pieces_; }
   /// The array TimeValue; 0 if there is none.
   [[nodiscard]] double time() const noexcept { return time_; }
@@ -78,12 +81,24 @@ class VtuFile {
   template <class T>
   [[nodiscard]] std::vector<T> numbers_of_text(const VtuArray& array) const;
 
-  const std::string& path_;
+  std::string path_;
   VtuEncoding encoding_;
   std::vector<VtuPiece> pieces_;
   std::string_view appended_;
   bool appended_is_base64_ = false;
   double time_ = 0;
 };
+
+/// A file that is open.
+struct OpenVtuFile {
+  std::unique_ptr<FileBytes> bytes;  ///< null: the caller has them
+  std::unique_ptr<VtuFile> file;
+};
+
+/// The files that hold the pieces of a mesh: of a .pvtu (PUnstructuredGrid) those that it names,
+/// otherwise the file itself. `bytes`, the content at `path`, must outlive them. Throws Error
+/// (bad_file) that names the file that is missing, truncated, damaged or of another kind.
+[[nodiscard]] std::vector<OpenVtuFile> open_vtu_files(const std::string& path,
+                                                      std::string_view bytes);
 
 }  // namespace tess::m2m

@@ -34,12 +34,11 @@ std::vector<std::int64_t> types_of(const VtuFile& file, const VtuPiece& piece) {
 
 class VtuMeshReader {
  public:
-  VtuMeshReader(const std::string& path, std::string_view bytes) : path_(path), file_(path, bytes) {
-    mesh_.name = path;
-  }
+  explicit VtuMeshReader(const std::string& path) { mesh_.name = path; }
 
-  TetMesh read() {
-    for (const VtuPiece& piece : file_.pieces()) read(piece);
+  TetMesh read(const std::vector<OpenVtuFile>& files) {
+    for (const OpenVtuFile& open : files)
+      for (const VtuPiece& piece : open.file->pieces()) read(*open.file, piece);
     for (const VtuCell& cell : vtu_cells) {
       const std::uint64_t n = n_skipped_[static_cast<std::size_t>(cell.number)];
       if (n > 0) mesh_.skipped.push_back({std::string(cell.name), n});
@@ -50,22 +49,23 @@ class VtuMeshReader {
   }
 
  private:
-  void read(const VtuPiece& piece) {
+  void read(const VtuFile& file, const VtuPiece& piece) {
     const std::size_t first = mesh_.n_points();
     if (piece.n_points > most_points - first)
-      fail(ErrorCode::bad_mesh, path_, ": has more than ", most_points, " points; split the mesh");
-    if (piece.n_cells > 0 || piece.n_points > 0) read_points(piece);
+      fail(ErrorCode::bad_mesh, mesh_.name, ": has more than ", most_points,
+           " points; split the mesh");
+    if (piece.n_cells > 0 || piece.n_points > 0) read_points(file, piece);
     if (piece.n_cells == 0) return;
-    const std::vector<std::int64_t> types = types_of(file_, piece);
+    const std::vector<std::int64_t> types = types_of(file, piece);
     const std::vector<std::int64_t> ends =
-        file_.integers(file_.array(piece.cells, "offsets"), piece.n_cells);
+        file.integers(file.array(piece.cells, "offsets"), piece.n_cells);
     const std::vector<std::int64_t> vertices =
-        file_.integers(file_.array(piece.cells, "connectivity"), VtuFile::any);
+        file.integers(file.array(piece.cells, "connectivity"), VtuFile::any);
     std::int64_t begin = 0;
     for (std::size_t c = 0; c < piece.n_cells; ++c) {
       if (ends[c] < begin || ends[c] > static_cast<std::int64_t>(vertices.size()))
-        file_.damaged("cell ", c, " ends at ", ends[c], " of ", vertices.size());
-      add(types[c], c,
+        file.damaged("cell ", c, " ends at ", ends[c], " of ", vertices.size());
+      add(file, types[c], c,
           std::span(vertices).subspan(static_cast<std::size_t>(begin),
                                       static_cast<std::size_t>(ends[c] - begin)),
           first);
@@ -73,38 +73,39 @@ class VtuMeshReader {
     }
   }
 
-  void read_points(const VtuPiece& piece) {
-    if (piece.points.empty()) file_.damaged("Points is missing");
-    const std::vector<double> x = file_.reals(piece.points[0], 3 * piece.n_points);
+  void read_points(const VtuFile& file, const VtuPiece& piece) {
+    if (piece.points.size() != 1)
+      file.damaged("a Piece has ", piece.points.size(), " arrays of Points instead of one");
+    const std::vector<double> x = file.reals(piece.points[0], 3 * piece.n_points);
     for (std::size_t v = 0; v < piece.n_points; ++v)
       mesh_.points.push_back({x[3 * v], x[3 * v + 1], x[3 * v + 2]});
   }
 
-  void add(std::int64_t type, std::size_t cell, std::span<const std::int64_t> vertices,
-           std::size_t first) {
+  void add(const VtuFile& file, std::int64_t type, std::size_t cell,
+           std::span<const std::int64_t> vertices, std::size_t first) {
     if (type == ghost) {
       ++n_ghosts_;
       return;
     }
     const VtuCell* const known = vtu_cell(type);
-    const auto volume = vtu_volume(type);
-    if (known == nullptr || (known->dimension == 3 && !volume))
-      fail(ErrorCode::bad_mesh, path_, ": cell ", cell, " is a ",
-           known == nullptr ? "cell" : known->name, " (VTK type ", type,
-           "); of volumes, tetra, hexahedron, voxel, wedge, pyramid and quadratic tetra are "
-           "supported: mesh it with one of these");
+    const auto volume = vtu_volume(type, vertices.size());
+    if (known == nullptr || (vtu_has_volume(type) && !volume))
+      fail(ErrorCode::bad_mesh, file.path(), ": cell ", cell, " is a ",
+           known == nullptr ? "cell" : known->name, " (VTK type ", type, ") of ", vertices.size(),
+           " points; of volumes, tetra, hexahedron, voxel, wedge, pyramid and quadratic tetra are "
+           "supported, also as Lagrange cells: mesh it with one of these");
     if (!volume) {
       ++n_skipped_[static_cast<std::size_t>(type)];
       return;
     }
     if (vertices.size() != n_vertices(*volume))
-      file_.damaged("cell ", cell, " of type ", known->name, " has ", vertices.size(), " vertices");
+      file.damaged("cell ", cell, " of type ", known->name, " has ", vertices.size(), " vertices");
     std::array<VertexId, 10> ids{};
     const auto n_points = static_cast<std::int64_t>(mesh_.n_points() - first);
     for (std::size_t k = 0; k < vertices.size(); ++k) {
       if (vertices[k] < 0 || vertices[k] >= n_points)
-        fail(ErrorCode::bad_mesh, path_, ": cell ", cell, " names point ", vertices[k], " of ",
-             n_points, "; write the mesh again");
+        fail(ErrorCode::bad_mesh, file.path(), ": cell ", cell, " names point ", vertices[k],
+             " of ", n_points, "; write the mesh again");
       ids[k] = static_cast<VertexId>(vertices[k] + static_cast<std::int64_t>(first));
     }
     if (type == 11) {
@@ -127,8 +128,6 @@ class VtuMeshReader {
     return dot(edge(1), cross(edge(2), edge(3))) < 0;
   }
 
-  const std::string& path_;
-  VtuFile file_;
   TetMesh mesh_;
   ElementSplitter elements_{mesh_};
   std::array<std::uint64_t, 128> n_skipped_{};  // per type number
@@ -138,13 +137,15 @@ class VtuMeshReader {
 /// PointData and CellData of all pieces, at one time.
 class VtuFields : public FieldReader {
  public:
-  VtuFields(const std::string& path, std::string_view bytes) : path_(path), file_(path, bytes) {
-    times_ = {file_.time()};
+  VtuFields(const std::string& path, std::string_view bytes)
+      : path_(path), files_(open_vtu_files(path, bytes)) {
+    times_ = {files_[0].file->time()};
     // Empty pieces need not have the arrays.
-    const auto& pieces = file_.pieces();
-    const auto full = std::ranges::find_if(
-        pieces, [](const VtuPiece& piece) { return piece.n_points != 0 && piece.n_cells != 0; });
-    const VtuPiece& first = full != pieces.end() ? *full : pieces[0];
+    const VtuPiece* full = nullptr;
+    for (const OpenVtuFile& open : files_)
+      for (const VtuPiece& piece : open.file->pieces())
+        if (full == nullptr && piece.n_points != 0 && piece.n_cells != 0) full = &piece;
+    const VtuPiece& first = full != nullptr ? *full : files_[0].file->pieces()[0];
     for (const VtuArray& array : first.point_data) list(array, FieldPlace::vertices);
     for (const VtuArray& array : first.cell_data) list(array, FieldPlace::tets);
   }
@@ -155,47 +156,55 @@ class VtuFields : public FieldReader {
     const bool nodal = wanted.place == FieldPlace::vertices;
     const std::size_t n_components = wanted.n_components;
     if (n_components < 1 || n_components > 1000)
-      file_.damaged("'", wanted.name, "' has ", n_components, " components");
+      files_[0].file->damaged("'", wanted.name, "' has ", n_components, " components");
     std::vector<double> values;
     std::size_t n_points = 0;
-    for (const VtuPiece& piece : file_.pieces()) {
-      n_points += piece.n_points;
-      const std::size_t n = nodal ? piece.n_points : piece.n_cells;
-      if (n == 0) continue;
-      const VtuArray& array = file_.array(nodal ? piece.point_data : piece.cell_data, wanted.name);
-      if (array.n_components != n_components)
-        file_.damaged("'", wanted.name, "' has ", n_components, " components and ",
-                      array.n_components);
-      const std::vector<double> all = file_.reals(array, n * n_components);
-      if (nodal) {
-        values.insert(values.end(), all.begin(), all.end());
-        continue;
+    for (const OpenVtuFile& open : files_)
+      for (const VtuPiece& piece : open.file->pieces()) {
+        n_points += piece.n_points;
+        append(*open.file, piece, wanted, values);
       }
-      const std::vector<std::int64_t> types = types_of(file_, piece);
-      for (std::size_t c = 0; c < n; ++c)
-        if (vtu_volume(types[c]))
-          values.insert(values.end(), all.begin() + static_cast<std::ptrdiff_t>(c * n_components),
-                        all.begin() + static_cast<std::ptrdiff_t>((c + 1) * n_components));
-    }
     if (!nodal) return values_of_tets(mesh, std::move(values), n_components, path_);
     check_n_points(mesh, static_cast<std::int64_t>(n_points), path_);
     return values;
   }
 
  private:
+  static void append(const VtuFile& file, const VtuPiece& piece, const FileField& wanted,
+                     std::vector<double>& values) {
+    const bool nodal = wanted.place == FieldPlace::vertices;
+    const std::size_t n_components = wanted.n_components;
+    const std::size_t n = nodal ? piece.n_points : piece.n_cells;
+    if (n == 0) return;
+    const VtuArray& array = file.array(nodal ? piece.point_data : piece.cell_data, wanted.name);
+    if (array.n_components != n_components)
+      file.damaged("'", wanted.name, "' has ", n_components, " components and ",
+                   array.n_components);
+    const std::vector<double> all = file.reals(array, n * n_components);
+    if (nodal) {
+      values.insert(values.end(), all.begin(), all.end());
+      return;
+    }
+    const std::vector<std::int64_t> types = types_of(file, piece);
+    for (std::size_t c = 0; c < n; ++c)
+      if (vtu_has_volume(types[c]))
+        values.insert(values.end(), all.begin() + static_cast<std::ptrdiff_t>(c * n_components),
+                      all.begin() + static_cast<std::ptrdiff_t>((c + 1) * n_components));
+  }
+
   void list(const VtuArray& array, FieldPlace place) {
     if (array.name.empty() || array.type == "String") return;
     fields_.push_back({array.name, place, array.n_components});
   }
 
   const std::string& path_;
-  VtuFile file_;
+  std::vector<OpenVtuFile> files_;
 };
 
 }  // namespace
 
 TetMesh read_vtu(const std::string& path, std::string_view bytes) {
-  return VtuMeshReader(path, bytes).read();
+  return VtuMeshReader(path).read(open_vtu_files(path, bytes));
 }
 
 std::unique_ptr<FieldReader> vtu_fields(const std::string& path, std::string_view bytes) {

@@ -1,6 +1,7 @@
-// Reads the tetrahedra of a VTU file (VTK XML UnstructuredGrid, vtu_file.hpp). Hexahedra, voxels,
-// wedges, pyramids and quadratic tetrahedra are split; cells without a volume are skipped and
-// counted. Pieces are joined in the order of the file; their points are not merged.
+// Reads the tetrahedra of a VTU file (VTK XML UnstructuredGrid, vtu_file.hpp), or of the files that a
+// .pvtu names. Hexahedra, voxels, wedges, pyramids and quadratic tetrahedra are split, also if they
+// are written as Lagrange cells; cells without a volume are skipped and counted. Pieces are joined
+// in the order of the file; their points are not merged.
 #pragma once
 
 #include "m2m/mesh.hpp"

@@ -33,6 +33,7 @@ namespace tess::balance {
 struct Phase {
   std::uint64_t id = 0;
   Snapshot snapshot;
+  std::size_t n_left_out = 0;  ///< communications with an entity that is a task in no file
 };
 
 /// A file's content, and its name for error messages.
@@ -50,8 +51,7 @@ struct LbDatafile {
 /// that is one number, otherwise its id. Only messages between objects ("SendRecv") count. Where
 /// tasks disagree on a shared block's size or on a PE's working memory, the largest counts. If no
 /// file describes PEs, their number is the highest node plus one, and their speed is 1. Throws
-/// Error, one line with file and place, if a file is damaged or refers to an entity that no file
-/// defines.
+/// Error, one line with file and place, if a file is damaged or names one of several tasks.
 [[nodiscard]] std::vector<Phase> parse_lb_datafiles(const std::vector<LbDatafile>& files);
 
 /// The bytes of a file of this name with this text: compressed if the name ends in ".br".

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 
@@ -82,13 +83,15 @@ class Place {
   std::string where_;
 };
 
-/// The name of an entity in a file: an id is unique, a sequence number only together with its home.
+/// The name of an entity in a file: an id is unique, a sequence number often only together with its
+/// home, which a file need not give.
 using Name = std::tuple<bool, std::uint64_t, std::uint64_t>;
+constexpr std::uint64_t no_home = std::numeric_limits<std::uint64_t>::max();
 
 Name name_of(const Place& entity) {
   if (entity.has("id")) return {true, entity["id"].count(), 0};
   if (!entity.has("seq_id")) entity.damaged("lacks 'id' or 'seq_id'");
-  return {false, entity["seq_id"].count(), entity.has("home") ? entity["home"].count() : 0};
+  return {false, entity["seq_id"].count(), entity.has("home") ? entity["home"].count() : no_home};
 }
 
 ElementKey key_of(const Place& entity) {
@@ -120,11 +123,17 @@ class Gathering {
     for (std::size_t k = 0; k < all.size(); ++k) {
       const Place one = all.at(k);
       if (one["type"].word() != "SendRecv") continue;
-      const std::size_t from = element(one["from"]), to = element(one["to"]);
-      s_.edges.push_back({from, to, one["bytes"].whole_amount(), one["messages"].count()});
+      const auto from = element(one["from"]), to = element(one["to"]);
+      const Edge edge{from.value_or(0), to.value_or(0), one["bytes"].whole_amount(),
+                      one["messages"].count()};
+      if (from && to)
+        s_.edges.push_back(edge);
+      else
+        ++n_left_out_;
     }
   }
 
+  [[nodiscard]] std::size_t n_left_out() const { return n_left_out_; }
   [[nodiscard]] std::size_t n_pes() const { return std::max(s_.pes.size(), highest_ + 1); }
 
   /// With `n_pes` PEs if no file describes them.
@@ -233,10 +242,22 @@ class Gathering {
       s_.pes.working_bytes.push_back(working.at(p).whole_amount());
   }
 
-  [[nodiscard]] std::size_t element(const Place& entity) const {
-    const auto found = positions_.find(name_of(entity));
-    if (found == positions_.end()) entity.damaged("has no task in any of the files given");
-    return found->second;
+  /// None if no task in the files has the name: the schema allows such messages.
+  [[nodiscard]] std::optional<std::size_t> element(const Place& entity) const {
+    const Name name = name_of(entity);
+    if (const auto found = positions_.find(name); found != positions_.end()) return found->second;
+    const auto [is_id, number, home] = name;
+    if (is_id) return std::nullopt;
+    // Without a home on either side, a sequence number that is unique names its task.
+    std::optional<std::size_t> unique;
+    for (auto at = positions_.lower_bound({false, number, 0}); at != positions_.end(); ++at) {
+      const auto& [other_is_id, other, other_home] = at->first;
+      if (other_is_id || other != number) break;
+      if (home != no_home && other_home != no_home) continue;
+      if (unique) entity.damaged("has a seq_id of several tasks, but no home");
+      unique = at->second;
+    }
+    return unique;
   }
 
   Snapshot s_;
@@ -245,6 +266,7 @@ class Gathering {
   std::map<std::uint64_t, std::uint64_t> rank_working_bytes_;
   std::size_t highest_ = 0;
   std::size_t n_positions_ = 0;
+  std::size_t n_left_out_ = 0;
 };
 
 json parse(const LbDatafile& file) {
@@ -278,7 +300,7 @@ std::vector<Phase> parse_lb_datafiles(const std::vector<LbDatafile>& files) {
   std::size_t n_pes = 1;
   for (const auto& [id, one] : phases) n_pes = std::max(n_pes, one.n_pes());
   std::vector<Phase> result;
-  for (auto& [id, one] : phases) result.push_back({id, one.finish(n_pes)});
+  for (auto& [id, one] : phases) result.push_back({id, one.finish(n_pes), one.n_left_out()});
   return result;
 }
 

@@ -93,6 +93,31 @@ std::vector<std::uint64_t> hashes(const FileFieldsReport& report) {
 
 }  // namespace
 
+TEST_CASE("vertices of no element are reported, and those that coincide in a transfer onto itself",
+          "[apps][m2m]") {
+  const Scratch scratch;
+  const std::string path = scratch.path("spare.exo");
+  TetMesh mesh = kuhn_mesh({2});
+  mesh.points.push_back(mesh.points[0]);
+  write_exodus(path, mesh, std::array{Field{"temp", 1, std::vector<double>(mesh.n_points(), 2)}});
+  const auto shown = [&](const std::string& target) {
+    FileFieldsRequest request;
+    request.source = path;
+    request.target = target;
+    request.fields = {"temp"};
+    const FileFieldsReport report = moved(request);
+    return table(report) + json(report);
+  };
+  const std::string unused = "in the source: 1 of 28 vertices belong to no element";
+  const std::string coincident = "2 of 28 vertices have the place of another";
+  CHECK_THAT(shown("kuhn:2"), Catch::Contains("unused       " + unused) &&
+                                  !Catch::Contains(coincident) &&
+                                  !Catch::Contains("in the target"));
+  CHECK_THAT(shown(path), Catch::Contains("in the target: 1 of 28 vertices belong to no element") &&
+                              Catch::Contains("coincident   in the source: " + coincident) &&
+                              Catch::Contains("\"coincident\": \"" + coincident));
+}
+
 TEST_CASE("a field that is called status is written beside the status of the vertices",
           "[m2m][driver]") {
   const Scratch scratch;

@@ -4,7 +4,9 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/scratch.hpp"
 
+#include <cmath>
 #include <cstring>
+#include <fmt/format.h>
 
 using apps::read_surface;
 using tess::dn::Surface;
@@ -38,11 +40,11 @@ std::string bytes_of(T value, bool reversed) {
 // A triangle, the same again, one with an edge of no length, a point, and a fan of two.
 const std::string obj =
     "v 0 0 0\nv 1 0 0\nv 0 .5 0\nv 3 0 0.25\n"
-    "f 1 2 3\nf 1/1/1 2//2 3/7\nf 1 1 2\nf 4 4 4\nf -4 -3 -2 -1\n";
+    "f 1 2 3\nf 1/1/1 2//2 3/7\nf 1 1 2\nf 4 4 4\nf -4 -3 -1 -2\n";
 const std::vector<Corners> triangles{
-    {{{0, 0, 0}, {1, 0, 0}, {0, 0.5, 0}}}, {{{0, 0, 0}, {1, 0, 0}, {0, 0.5, 0}}},
-    {{{0, 0, 0}, {0, 0, 0}, {1, 0, 0}}},   {{{3, 0, 0.25}, {3, 0, 0.25}, {3, 0, 0.25}}},
-    {{{0, 0, 0}, {1, 0, 0}, {0, 0.5, 0}}}, {{{0, 0, 0}, {0, 0.5, 0}, {3, 0, 0.25}}},
+    {{{0, 0, 0}, {1, 0, 0}, {0, 0.5, 0}}},  {{{0, 0, 0}, {1, 0, 0}, {0, 0.5, 0}}},
+    {{{0, 0, 0}, {0, 0, 0}, {1, 0, 0}}},    {{{3, 0, 0.25}, {3, 0, 0.25}, {3, 0, 0.25}}},
+    {{{0, 0, 0}, {1, 0, 0}, {3, 0, 0.25}}}, {{{0, 0, 0}, {3, 0, 0.25}, {0, 0.5, 0}}},
 };
 
 /// The same as PLY: with a property and an element that are passed over.
@@ -64,7 +66,7 @@ std::string ply(const std::string& format, const std::string& real) {
   put(std::uint8_t{2}), put(std::int16_t{-5}), put(std::int16_t{7});
   put(std::uint8_t{0});
   const std::vector<std::vector<int>> faces{
-      {0, 1, 2}, {0, 1, 2}, {0, 0, 1}, {3, 3, 3}, {0, 1, 2, 3}};
+      {0, 1, 2}, {0, 1, 2}, {0, 0, 1}, {3, 3, 3}, {0, 1, 3, 2}};
   for (const auto& face : faces) {
     put(static_cast<std::uint8_t>(face.size()));
     for (const int v : face) put(v);
@@ -133,6 +135,152 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("what is no triangle of a surface is named, and strips of PLY are read",
+          "[apps][surface_file]") {
+  const tess::test::Scratch scratch;
+  const Surface lines = read_surface(scratch.write(
+      "a.obj",
+      "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\ns off\nl 1 2\nl 2 3\np 1\nF 1 2 3\nfo 1 2 3\n"));
+  CHECK(lines.triangles.size() == 1);
+  CHECK(remarks_text(lines) == "skipped l: 2, skipped lines of no known keyword: 1, skipped p: 1");
+  CHECK(remarks_text(read_surface(scratch.write("a.obj", obj))) == "polygons that are not flat: 1");
+  CHECK(remarks_text(read_surface(scratch.write("a.ply", ply("ascii", "float")))) ==
+        "polygons that are not flat: 1, skipped material: 2");
+  // The faces of a cube: one as a face, the others as strips, of which -1 begins the next.
+  const std::vector<std::vector<int>> strips{
+      {4, 5, 6, 7}, {0, 1, 4, 5}, {2, 6, 3, 7}, {0, 4, 2, 6}, {1, 3, 5, 7}};
+  for (const bool text : {true, false}) {
+    std::string bytes = std::string("ply\nformat ") + (text ? "ascii" : "binary_little_endian") +
+                        " 1.0\nelement tristrips 1\nproperty list int int vertex_indices\n"
+                        "element vertex 8\nproperty float x\nproperty float y\nproperty float z\n"
+                        "element face 1\nproperty list int int vertex_indices\nend_header\n";
+    const auto put = [&](auto value) {
+      bytes += text ? std::to_string(value) + " " : bytes_of(value, false);
+    };
+    put(25);
+    for (const auto& strip : strips) {
+      for (const int v : strip) put(v);
+      put(-1);
+    }
+    for (int v = 0; v < 8; ++v)
+      for (const int bit : {1, 2, 4}) put((v & bit) != 0 ? 1.F : 0.F);
+    for (const int v : {4, 0, 2, 3, 1}) put(v);
+    const Surface cube = read_surface(scratch.write("strips.ply", bytes));
+    CHECK(cube.triangles.size() == 12);
+    CHECK(is_closed(cube));  // each strip turns every other triangle round
+    CHECK(remarks_text(cube).empty());
+  }
+}
+
+TEST_CASE("a polygon that is not convex is cut inside itself, from whichever corner it begins",
+          "[apps][surface_file]") {
+  const tess::test::Scratch scratch;
+  using Outline = std::vector<std::array<double, 2>>;
+  const auto area_of = [](const Outline& outline) {
+    double area = 0;
+    for (std::size_t i = 0; i < outline.size(); ++i) {
+      const auto &a = outline[i], &b = outline[(i + 1) % outline.size()];
+      area += 0.5 * (a[0] * b[1] - a[1] * b[0]);
+    }
+    return area;
+  };
+  // The planes along the axes, and one across them. Coordinates stay exact.
+  const auto placed = [](const std::array<double, 2>& p, int plane) {
+    const auto [x, y] = p;
+    return plane == 0   ? tess::dn::Vec3{x, y, 0}
+           : plane == 1 ? tess::dn::Vec3{0, x, y}
+           : plane == 2 ? tess::dn::Vec3{y, 0, x}
+                        : tess::dn::Vec3{x, y, x + y};
+  };
+  const auto read = [&](const Outline& outline, std::size_t first, bool turned, int plane) {
+    std::string corners, face = "f", list;
+    for (std::size_t i = 0; i < outline.size(); ++i) {
+      const std::size_t at = turned ? outline.size() - 1 - i : i;
+      const auto p = placed(outline[(first + at) % outline.size()], plane);
+      corners += fmt::format("v {} {} {}\n", p.x, p.y, p.z);
+      face += fmt::format(" {}", i + 1);
+      list += fmt::format(" {}", i);
+    }
+    const Surface of_obj = read_surface(scratch.write("a.obj", corners + face + "\n"));
+    // PLY may have the face before its corners.
+    std::string rows = corners;
+    std::erase(rows, 'v');
+    const Surface of_ply = read_surface(scratch.write(
+        "a.ply", fmt::format("ply\nformat ascii 1.0\nelement face 1\nproperty list int int "
+                             "vertex_indices\nelement vertex {0}\nproperty double x\nproperty "
+                             "double y\nproperty double z\nend_header\n{0}{1}\n{2}",
+                             outline.size(), list, rows)));
+    CHECK(of_ply.triangles == of_obj.triangles);
+    CHECK(of_ply.remarks == of_obj.remarks);
+    return of_obj;
+  };
+  // An L, a comb, a square with corners on its sides, a spiral, and a square with a square hole that
+  // a side joins to the outline there and back.
+  const std::vector<Outline> outlines{
+      {{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}},
+      {{0, 0}, {7, 0}, {7, 3}, {6, 1}, {5, 3}, {4, 1}, {3, 3}, {2, 1}, {1, 3}},
+      {{0, 0}, {1, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {1, 3}, {0, 3}, {0, 2}, {0, 1}},
+      {{0, 0},
+       {5, 0},
+       {5, 5},
+       {1, 5},
+       {1, 2},
+       {3, 2},
+       {3, 3},
+       {2, 3},
+       {2, 4},
+       {4, 4},
+       {4, 1},
+       {0, 1}},
+      {{0, 0}, {6, 0}, {6, 6}, {0, 6}, {0, 0}, {2, 2}, {2, 4}, {4, 4}, {4, 2}, {2, 2}},
+      {{0, 0}, {4, 1}, {8, 0}, {4, 6}}};
+  for (std::size_t k = 0; k < outlines.size(); ++k)
+    for (std::size_t first = 0; first < outlines[k].size(); ++first)
+      for (const bool turned : {false, true})
+        for (int plane = 0; plane < 4; ++plane) {
+          const Outline& outline = outlines[k];
+          CAPTURE(k, first, turned, plane);
+          const Surface surface = read(outline, first, turned, plane);
+          CHECK(remarks_text(surface).empty());
+          REQUIRE(surface.triangles.size() == outline.size() - 2);
+          // The triangles have the outline's area, and none is turned the other way.
+          const double stretch = plane == 3 ? std::sqrt(3.0) : 1;
+          tess::dn::Vec3 sum{};
+          double absolute = 0;
+          for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+            const auto [a, b, c] = surface.corners(t);
+            const auto twice = cross(b - a, c - a);
+            sum = sum + 0.5 * twice;
+            absolute += 0.5 * norm(twice);
+          }
+          CHECK(absolute == Approx(area_of(outline) * stretch).epsilon(1e-12));
+          CHECK(norm(sum) == Approx(absolute).epsilon(1e-12));
+        }
+  // A convex polygon stays a fan, also one with corners on its sides.
+  const Outline square{{0, 0}, {1, 0}, {2, 0}, {2, 2}, {1, 2}, {0, 2}};
+  for (std::size_t first = 0; first < square.size(); ++first)
+    CHECK(read(square, first, false, 0).triangles ==
+          std::vector<std::array<std::uint32_t, 3>>{{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 5}});
+}
+
+TEST_CASE("a polygon that crosses itself stays a fan, and is counted as one that is not flat is",
+          "[apps][surface_file]") {
+  const tess::test::Scratch scratch;
+  const auto remarks_of = [&](const std::string& corners, const std::string& face) {
+    const Surface surface = read_surface(scratch.write("a.obj", corners + "f " + face + "\n"));
+    CHECK(surface.triangles[0] == std::array<std::uint32_t, 3>{0, 1, 2});
+    return remarks_text(surface);
+  };
+  const std::string square = "v 0 0 0\nv 1 1 0\nv 1 0 0\nv 0 1 0\n";
+  CHECK(remarks_of(square, "1 2 3 4") == "polygons that cross themselves: 1");
+  CHECK(remarks_of("v 0 5 0\nv 3 -4 0\nv -5 1 0\nv 5 1 0\nv -3 -4 0\n", "1 2 3 4 5") ==
+        "polygons that cross themselves: 1");
+  CHECK(remarks_of("v 0 0 0\nv 1 0 0\nv 1 1 .1\nv 0 1 0\n", "1 2 3 4") ==
+        "polygons that are not flat: 1");
+  CHECK(remarks_of("v 0 0 0\nv 1 0 0\nv 1 1 1e-7\nv 0 1 0\n", "1 2 3 4").empty());
+  CHECK(remarks_of("v 0 0 0\nv 1 0 0\nv 2 0 0\nv 3 0 0\n", "1 2 3 4").empty());
+}
+
 TEST_CASE("a surface without area, or a very small one, is a surface for a collision",
           "[apps][surface_file]") {
   const tess::test::Scratch scratch;
@@ -155,6 +303,67 @@ TEST_CASE(
   std::string binary = binary_stl(triangles) + "more";
   binary.replace(0, 6, "solid ");
   CHECK(soup(read_surface(scratch.write("a.stl", binary))) == triangles);
+}
+
+TEST_CASE("STL of other writers is read: words apart, binary that begins with solid, a count of 0",
+          "[apps][surface_file]") {
+  const tess::test::Scratch scratch;
+  std::string apart = text_stl(triangles);
+  for (const std::string word : {"loop", "facet", "solid"})
+    for (std::size_t at = apart.find("end" + word); at != std::string::npos;
+         at = apart.find("end" + word))
+      apart.insert(at + 3, " ");
+  CHECK(soup(read_surface(scratch.write("a.stl", apart))) == triangles);
+  CHECK_THAT(message_of([&] {
+               (void)read_surface(scratch.write("a.stl", "solid\nfacette 0 0 1\nendsolid\n"));
+             }),
+             Catch::Contains("a.stl:2: no line of an STL file begins with 'facette'"));
+  std::string solid = binary_stl(triangles);
+  solid.replace(0, 6, "solid ");
+  const Surface more = read_surface(scratch.write("a.stl", solid + std::string(120, 'x')));
+  CHECK(soup(more) == triangles);
+  CHECK(remarks_text(more) == "bytes behind the last facet: 120");
+  std::string uncounted = solid;
+  uncounted.replace(80, 4, 4, '\0');
+  const Surface all = read_surface(scratch.write("a.stl", uncounted));
+  CHECK(soup(all) == triangles);
+  CHECK(remarks_text(all) == "facets that the header does not announce: 6");
+  CHECK_THAT(message_of([&] {
+               (void)read_surface(scratch.write("a.stl", solid.substr(0, solid.size() - 9)));
+             }),
+             Catch::Contains("announces 6 facets, but has bytes for 5; it is truncated"));
+}
+
+TEST_CASE("PLY of other writers is read: blanks in the header, longer rows, what is no number",
+          "[apps][surface_file]") {
+  const tess::test::Scratch scratch;
+  const std::string head =
+      "ply \nformat ascii 1.0\t\nelement vertex 3\nproperty float x\nproperty float y\n"
+      "property float z\nproperty float quality\nelement face 1\n"
+      "property list uchar int vertex_indices\nproperty list uchar float weights\nend_header \n";
+  const auto read = [&](const std::string& rows) {
+    return read_surface(scratch.write("a.ply", head + rows));
+  };
+  const std::vector<Corners> one{{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}}};
+  const Surface plain = read("0 0 0 1\n1 0 0 1\n0 1 0 1\n3 0 1 2 1 -1.#IND\n");
+  CHECK(soup(plain) == one);
+  CHECK(plain.remarks.empty());
+  const Surface longer = read("0 0 0 -1.#IND 8\n1 0 0 1.#QNAN\n\n0 1 0 red 255 0\n3 0 1 2 0 7 7 7");
+  CHECK(soup(longer) == one);
+  CHECK(remarks_text(longer) == "rows with more numbers than the header announces: 3");
+  CHECK(soup(read("0 0 0 1 1 0 0\n1 0 1 0 1 3 0 1 2 0\n")) == one);  // rows broken elsewhere
+  CHECK_THAT(message_of([&] { (void)read("0 0 0 1\n1 0 0\n0 1 0 1\n3 0 1 2 0\n"); }),
+             Catch::Contains("vertex 1 of 3: its line ends before all that the header announces"));
+  CHECK_THAT(message_of([&] { (void)read("0 0 0 1\n1 -1.#IND 0 1\n0 1 0 1\n3 0 1 2 0\n"); }),
+             Catch::Contains("vertex 1 of 3: '-1.#IND' is not a number"));
+}
+
+TEST_CASE("a byte order mark stands before any text", "[apps][surface_file]") {
+  const tess::test::Scratch scratch;
+  const std::string mark = "\xEF\xBB\xBF";
+  CHECK(soup(read_surface(scratch.write("a.obj", mark + obj))) == triangles);
+  CHECK(soup(read_surface(scratch.write("a.ply", mark + ply("ascii", "double")))) == triangles);
+  CHECK(soup(read_surface(scratch.write("a.stl", mark + text_stl(triangles)))) == triangles);
 }
 
 TEST_CASE("text is read in double precision", "[apps][surface_file]") {

@@ -1,5 +1,6 @@
 // ExodusII files whose parts contradict each other: libexodusII does not notice it.
 #include "m2m/field_file.hpp"
+#include "m2m/io/ranges/mesh_ranges.hpp"
 #include "m2m/kuhn.hpp"
 #include "m2m/read_mesh.hpp"
 #include "m2m/write_exodus.hpp"
@@ -9,6 +10,7 @@
 
 #include <array>
 #include <exodusII.h>
+#include <fmt/core.h>
 #include <functional>
 #include <netcdf.h>
 #include <vector>
@@ -48,6 +50,32 @@ std::string two_tets(const Scratch& scratch, int mode, const std::function<void(
   (void)nc_enddef(id);
   ex_close(id);
   return path;
+}
+
+/// A copy in which the k-th variable is the first; none if there are fewer.
+std::string with_first(const Scratch& scratch, const std::string& path, int k) {
+  const std::string name = scratch.path("first.exo");
+  int from = 0, to = 0, n_dimensions = 0, n_variables = 0, n_attributes = 0, records = 0;
+  REQUIRE(nc_open(path.c_str(), NC_NOWRITE, &from) == NC_NOERR);
+  REQUIRE(nc_inq(from, &n_dimensions, &n_variables, &n_attributes, &records) == NC_NOERR);
+  REQUIRE(nc_create(name.c_str(), NC_64BIT_OFFSET, &to) == NC_NOERR);
+  std::array<char, NC_MAX_NAME + 1> text{};
+  for (int i = 0; i < n_dimensions; ++i) {
+    std::size_t length = 0;
+    int same = 0;
+    REQUIRE(nc_inq_dim(from, i, text.data(), &length) == NC_NOERR);
+    REQUIRE(nc_def_dim(to, text.data(), i == records ? NC_UNLIMITED : length, &same) == NC_NOERR);
+  }
+  for (int i = 0; i < n_attributes; ++i) {
+    REQUIRE(nc_inq_attname(from, NC_GLOBAL, i, text.data()) == NC_NOERR);
+    REQUIRE(nc_copy_att(from, NC_GLOBAL, text.data(), to, NC_GLOBAL) == NC_NOERR);
+  }
+  REQUIRE(nc_enddef(to) == NC_NOERR);
+  for (int i = 0; i < n_variables; ++i)
+    REQUIRE(nc_copy_var(from, (i + k) % n_variables, to) == NC_NOERR);
+  nc_close(from);
+  REQUIRE(nc_close(to) == NC_NOERR);
+  return k < n_variables ? name : "";
 }
 
 std::string refusal_of_file(const std::string& path) {
@@ -173,4 +201,89 @@ TEST_CASE("polygons and springs of ExodusII are skipped, and solids in one list 
     REQUIRE(nc_put_att_text(file, variable, "elem_type", 4, "TET4") == NC_NOERR);
   });
   CHECK_THAT(refusal_of_file(in_netcdf4), Catch::Contains("variable connect2 has "));
+}
+
+TEST_CASE("edges, faces and sets of elements of an ExodusII file are skipped by name",
+          "[m2m][io]") {
+  const Scratch scratch;
+  const std::string path = two_tets(scratch, 0, [](int file) {
+    int dimension = 0, n = 0;
+    for (const char* name :
+         {"num_ed_blk", "num_fa_blk", "num_edge_sets", "num_face_sets", "num_elem_sets"})
+      REQUIRE(nc_def_dim(file, name, static_cast<std::size_t>(++n), &dimension) == NC_NOERR);
+  });
+  CHECK(skipped_text(read_mesh(path)) ==
+        "1 edge block, 2 face block, 3 edge set, 4 face set, 5 element set");
+  CHECK(open_ranges(path) == nullptr);  // read_mesh() names them
+  CHECK(open_ranges(two_tets(scratch, 0, [](int) {})) != nullptr);
+}
+
+TEST_CASE(
+    "whichever variable of an ExodusII file is the first, the mesh and its fields are the same",
+    "[m2m][io]") {
+  const Scratch scratch;
+  const TetMesh mesh = kuhn_mesh({2, 0.1});
+  const Field u{"u", 1, std::vector<double>(mesh.n_points(), 3)};
+  const Field rho{"rho", 1, std::vector<double>(mesh.n_tets(), 4)};
+  const std::string path = scratch.path("whole.exo");
+  write_exodus(path, mesh, std::array{u}, std::array{rho});
+  int k = 0;
+  for (std::string copy = with_first(scratch, path, 0); !copy.empty();
+       copy = with_first(scratch, path, ++k)) {
+    CAPTURE(k);
+    const TetMesh read = read_mesh(copy);
+    CHECK(read.points == mesh.points);
+    CHECK(read.tets == mesh.tets);
+    const FieldFile fields(copy);
+    CHECK(fields.vertex_field(read, "u", 0).values == u.values);
+    CHECK(fields.tet_field(read, "rho", 0).values == rho.values);
+    const auto ranges = open_ranges(copy);
+    REQUIRE(ranges != nullptr);
+    std::vector<Point> points(mesh.n_points());
+    ranges->points(0, points);
+    CHECK(points == mesh.points);
+  }
+  CHECK(k > 8);  // also the coordinates, which the library takes for missing then
+}
+
+TEST_CASE("names of an ExodusII file are as long as it has them, and two of a name are refused",
+          "[m2m][io]") {
+  const Scratch scratch;
+  const TetMesh mesh = kuhn_mesh({1});
+  const std::string stem(60, 'n');
+  const auto field = [&](const std::string& name, double value) {
+    return Field{name, 1, std::vector<double>(mesh.n_points(), value)};
+  };
+  const std::string path = scratch.path("long.exo");
+  write_exodus(path, mesh, std::array{field(stem + "1", 1), field(stem + "2", 2)});
+  std::string bytes = slurp(path);
+  const std::string attribute = "maximum_name_length";
+  bytes.replace(bytes.find(attribute), attribute.size(), std::string("m").append(18, 'x'));
+  const FieldFile file(scratch.write("without.exo", bytes));
+  CHECK(file.vertex_field(mesh, stem + "1", 0).values[0] == 1);
+  CHECK(file.vertex_field(mesh, stem + "2", 0).values[0] == 2);
+  bytes.replace(bytes.find(stem + "2"), 61, stem + "1");
+  const FieldFile twice(scratch.write("twice.exo", bytes));
+  CHECK_THAT(message_of([&] { (void)twice.vertex_field(mesh, stem + "1", 0); }),
+             Catch::Contains("there are two variables '" + stem + "1' at vertices"));
+}
+
+TEST_CASE("components that have their letter at the end or in front are one vector", "[m2m][io]") {
+  const Scratch scratch;
+  const std::string path = scratch.path("vectors.exo");
+  const TetMesh mesh = kuhn_mesh({1});
+  std::vector<Field> fields;
+  double value = 0;
+  for (const char* name : {"velocityx", "velocityy", "velocityz", "xforce", "yforce", "zforce",
+                           "X_B", "Y_B", "Z_B", "x", "y", "z", "c", "cx", "cy", "cz"})
+    fields.push_back({name, 1, std::vector<double>(mesh.n_points(), ++value)});
+  write_exodus(path, mesh, fields);
+  const FieldFile file(path);
+  std::string whole;
+  for (const FileField& field : file.fields())
+    if (!field.is_part) whole += fmt::format("{}:{} ", field.name, field.n_components);
+  CHECK(whole == "velocity:3 force:3 B:3 x:1 y:1 z:1 c:1 cx:1 cy:1 cz:1 ");  // c is a scalar
+  const std::vector<double> force = file.vertex_field(mesh, "force", 0).values;
+  CHECK(std::vector<double>(force.begin(), force.begin() + 3) == std::vector<double>{4, 5, 6});
+  CHECK(file.vertex_field(mesh, "yforce", 0).values[0] == 5);
 }

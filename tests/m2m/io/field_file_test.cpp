@@ -474,7 +474,8 @@ TEST_CASE("a field with two values for a place, or one for a node that is none, 
     return message_of([&] { (void)FieldFile(path).vertex_field(read_mesh(path), "f", 0); });
   };
   const std::string reals = array("Float64", "1 2 3 4");
-  CHECK_THAT(vtu_refusal(reals + reals), Catch::Contains("there are two arrays f in one section"));
+  CHECK_THAT(vtu_refusal(reals + reals),
+             Catch::Contains("there are two variables 'f' at vertices"));
   CHECK(vtu_refusal(array("Int64", "1 2 3 -9007199254740991")).empty());
   CHECK_THAT(vtu_refusal(array("Int64", "1 2 3 9007199254740993")),
              Catch::Contains("array 'f' of type Int64 has a number from ±2^53 on"));

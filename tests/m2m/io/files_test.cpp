@@ -1,4 +1,5 @@
 #include "m2m/io/gmsh/gmsh_reader.hpp"
+#include "m2m/io/ranges/mesh_ranges.hpp"
 #include "m2m/kuhn.hpp"
 #include "m2m/read_mesh.hpp"
 #include "m2m/write_exodus.hpp"
@@ -82,6 +83,78 @@ TEST_CASE("gmsh files of both versions and modes give the same mesh, also with g
       }
     }
   }
+}
+
+TEST_CASE("MSH 2.0 and 2.1 are read as 2.2, and behind a byte order mark", "[m2m][io]") {
+  const Scratch scratch;
+  const TetMesh mesh = kuhn_mesh({2, 0.1});
+  for (const bool binary : {false, true})
+    for (const char* version : {"2", "2.0", "2.1", "2.2", "4.1"}) {
+      CAPTURE(version, binary);
+      std::string text = as_gmsh(mesh, version[0] == '2', binary, 1);
+      text.replace(text.find('\n') + 1, 3, version);
+      for (const char* mark : {"", "\xEF\xBB\xBF"}) {
+        const std::string path = scratch.write("a.msh", mark + text);
+        const TetMesh read = read_mesh(path);
+        CHECK(read.points == mesh.points);
+        CHECK(read.tets == mesh.tets);
+        const auto ranges = open_ranges(path);
+        CHECK((ranges != nullptr) == (binary && version[0] == '4'));
+        std::vector<Tet> tets(mesh.n_tets());
+        if (ranges != nullptr) ranges->tets(0, tets);
+        if (ranges != nullptr) CHECK(tets == mesh.tets);
+      }
+    }
+  std::string other = as_gmsh(mesh, false, false, 1);
+  other.replace(other.find("4.1"), 3, "4.0");
+  CHECK_THAT(message_of([&] { (void)read_mesh(scratch.write("a.msh", other)); }),
+             Catch::Contains("is MSH 4; only 2.0 to 2.2 and 4.1 are supported"));
+}
+
+TEST_CASE("sections of gmsh that are repeated are all read, and those of other kinds are named",
+          "[m2m][io]") {
+  const Scratch scratch;
+  const TetMesh mesh = kuhn_mesh({2, 0.1});
+  // The points in two sections, and the tetrahedra in two behind each.
+  const auto text = [&](bool legacy, bool binary) {
+    TetMesh part = mesh;
+    std::string out;
+    const std::ptrdiff_t n = std::ssize(mesh.tets) / 2;
+    for (const bool is_first : {true, false}) {
+      part.tets.assign(mesh.tets.begin() + (is_first ? 0 : n),
+                       mesh.tets.end() - (is_first ? n : 0));
+      std::string file = as_gmsh(part, legacy, binary, 7);
+      // Both halves use all points, which the file has once.
+      out += is_first ? file : file.substr(file.find("$Elements"));
+    }
+    return out;
+  };
+  for (const bool legacy : {false, true})
+    for (const bool binary : {false, true}) {
+      CAPTURE(legacy, binary);
+      const TetMesh read = read_mesh(scratch.write("twice.msh", text(legacy, binary)));
+      CHECK(read.points == mesh.points);
+      CHECK(read.tets == mesh.tets);
+      CHECK(skipped_text(read) == "2 point");
+      CHECK(open_ranges(scratch.path("twice.msh")) == nullptr);  // as it would lack a half
+    }
+  const std::string nodes_twice =
+      "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n3\n1 0 0 0\n2 1 0 0\n3 0 1 0\n$EndNodes\n"
+      "$Elements\n0\n$EndElements\n$Nodes\n1\n4 0 0 1\n$EndNodes\n"
+      "$Elements\n1\n1 4 0 1 2 3 4\n$EndElements\n";
+  const std::string view = "$ElementNodeData\n0\n$EndElementNodeData\n";
+  const TetMesh read = read_mesh(scratch.write("nodes.msh", nodes_twice + view + view));
+  CHECK(read.tets == std::vector<Tet>{{0, 1, 2, 3}});
+  CHECK(skipped_text(read) == "2 section $ElementNodeData");
+  const std::string binary = as_gmsh(mesh, false, true, 1);
+  CHECK(open_ranges(scratch.write("one.msh", binary)) != nullptr);
+  CHECK(open_ranges(scratch.write("one.msh", binary + view)) == nullptr);
+  CHECK_THAT(
+      message_of([&] {
+        (void)read_mesh(scratch.write("again.msh", nodes_twice + "$Nodes\n1\n2 9 9 9\n$EndNodes\n"
+                                                                 "$Elements\n0\n$EndElements\n"));
+      }),
+      Catch::Contains("node tag 2 occurs twice"));
 }
 
 TEST_CASE("a written mesh is read back with its fields, and no other file remains", "[m2m][io]") {
@@ -273,7 +346,7 @@ TEST_CASE("solids of gmsh are split; a tet10 of gmsh has its last two vertices s
   CHECK(split_text(tet10) == "1 TET10 into 8 tetrahedra");
   CHECK_THAT(
       message_of([] { (void)read_gmsh("old", "$NOD\n1\n1 0 0 0\n$ENDNOD\n$ELM\n0\n$ENDELM\n"); }),
-      Catch::Contains("old: is MSH 1; only 2.2 and 4.1 are supported"));
+      Catch::Contains("old: is MSH 1; only 2.0 to 2.2 and 4.1 are supported"));
   for (std::size_t t = 0; t < 8; ++t)
     CHECK(signed_volume(tet10, t) == Approx(1.0 / 48).epsilon(1e-14));
   const TetMesh solids = read_gmsh(

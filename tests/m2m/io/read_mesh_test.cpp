@@ -197,6 +197,12 @@ TEST_CASE("validate() names a wrong element, and allows flat and inverted tetrah
   CHECK(census.n_flat == 1);
   CHECK(census.n_unused == 1);
   CHECK(census.bounds.hi[0] == 9);
+  CHECK(unused_text(census.n_unused, mesh.n_points()) == "1 of 28 vertices belong to no element");
+  CHECK(unused_text(0, 28).empty());
+  CHECK(coincident_text(mesh).empty());
+  TetMesh seam = mesh;
+  seam.points[3] = seam.points[20] = seam.points[9];
+  CHECK(coincident_text(seam) == "3 of 28 vertices have the place of another");
 
   TetMesh bad = mesh;
   bad.points[5][1] = std::numeric_limits<double>::quiet_NaN();

@@ -286,9 +286,12 @@ TEST_CASE("solids of VTU are split, surfaces skipped, pieces joined, and fields 
               {{24, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9}}},
               {"p", 1, std::vector(10, 0.5)},
               {"rho", 2, {70, 71}}};
-  Vtu vtu({"raw", "appended", false});
-  const std::string inside = piece_of(vtu, first) + piece_of(vtu, second) + piece_of(vtu, third);
-  const std::string path = scratch.write("solids.vtu", vtu.file(inside));
+  const auto written = [&](const char* name) {
+    Vtu vtu({"raw", "appended", false});
+    const std::string inside = piece_of(vtu, first) + piece_of(vtu, second) + piece_of(vtu, third);
+    return scratch.write(name, "\xEF\xBB\xBF" + vtu.file(inside));  // behind a byte order mark
+  };
+  const std::string path = written("solids.vtu");
   const TetMesh mesh = read_mesh(path);
   CHECK(skipped_text(mesh) == "1 quad");
   CHECK(split_text(mesh) ==
@@ -312,6 +315,31 @@ TEST_CASE("solids of VTU are split, surfaces skipped, pieces joined, and fields 
   CHECK(rho.values[2 * 14] == 50);
   CHECK(rho.values[2 * 19] == 60);
   CHECK(rho.values[2 * 27 + 1] == 71);
+
+  // The same as Lagrange cells of degree 1 and 2.
+  for (Cells* piece : {&first, &second, &third})
+    for (auto& cell : piece->cells)
+      for (const auto& [type, lagrange] :
+           {std::pair{12, 72}, {13, 73}, {14, 74}, {24, 71}, {9, 70}})
+        if (cell.first == type) cell.first = lagrange;
+  const std::string other = written("lagrange.vtu");
+  const TetMesh same = read_mesh(other);
+  CHECK(same.tets == mesh.tets);
+  CHECK(skipped_text(same) == "1 Lagrange quadrilateral");
+  CHECK(FieldFile(other).tet_field(same, "rho", 0).values == rho.values);
+  second.cells[1] = {73, {0, 1, 2, 4, 5}};
+  CHECK_THAT(message_of([&] { (void)read_mesh(written("five.vtu")); }),
+             Catch::Contains("cell 1 is a Lagrange wedge (VTK type 73) of 5 points; of volumes"));
+}
+
+TEST_CASE("a piece of VTU with two arrays of points is refused", "[m2m][io]") {
+  const Scratch scratch;
+  std::string text = vtu_of(cells_of(kuhn_mesh({1})));
+  const std::size_t begin = text.find("<Points>") + 8, end = text.find("</Points>");
+  text.insert(end, text.substr(begin, end - begin));
+  const std::string path = scratch.write("twice.vtu", text);
+  CHECK_THAT(message_of([&] { (void)read_mesh(path); }),
+             Catch::Contains("a Piece has 2 arrays of Points instead of one"));
 }
 
 TEST_CASE("comments and CDATA in VTU are no numbers, and no format", "[m2m][io]") {
