@@ -99,8 +99,8 @@ class Chare : public detail::TessContributor<IndexType> {
   /// timers and messages between elements of the array that follow from it.
   ///
   /// If rounds overlap (one is started before the result of the last one is known) while elements
-  /// are inserted, name them: contribute(Round{k}, …) gives a value of round k, and
-  /// insert(Round{k}, …) an element that is in round k and later ones. Calls may overtake each other
+  /// are inserted, name them: contribute(RoundId{k}, …) gives a value of round k, and
+  /// insert(RoundId{k}, …) an element that is in round k and later ones. Calls may overtake each other
   /// then. Otherwise insert elements while no round is under way, and await an epoch around it, in
   /// two cases. If rounds overlap: a new element that contributes to a round before its first is
   /// refused by name. And if elements contribute in an entry method that another array or group

@@ -120,14 +120,14 @@ class ElementProxy {
     construct(pe, detail::Demand::insert, 0, std::forward<Args>(args)...);
   }
   /// Creates the element on this PE, or another; its first contribution is to this round, to which
-  /// all elements contribute by contribute(Round, …). What contributes to the round is called after
+  /// all elements contribute by contribute(RoundId, …). What contributes to the round is called after
   /// this call, or as its consequence.
   template <class... Args>
-  void insert(Round joins, Args&&... args) const {
+  void insert(RoundId joins, Args&&... args) const {
     insert_on(current_pe().id(), joins, std::forward<Args>(args)...);
   }
   template <class... Args>
-  void insert_on(PeId pe, Round joins, Args&&... args) const {
+  void insert_on(PeId pe, RoundId joins, Args&&... args) const {
     check_not_empty();
     construct(pe, detail::Demand::insert,
               detail::join_at(current_pe(), collection_, joins, in_words()),

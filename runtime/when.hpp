@@ -40,7 +40,7 @@ class [[nodiscard]] Sleep {
   explicit Sleep(Time delay) : pe_(&current_pe()), state_(std::make_shared<State>()) {
     timer_ = pe_->timers().after(delay, [state = state_] {
       state->over = true;
-      if (state->waiting != nullptr) state->waiting->wake();
+      if (state->waiting != nullptr) state->waiting->wake_at_end();  // exactly then
     });
   }
   Sleep(Sleep&& other) noexcept = default;

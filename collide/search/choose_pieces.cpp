@@ -98,8 +98,9 @@ std::optional<double> choose_pieces(ThinSets<Real> sets, const PairOptions& opti
   std::vector<std::uint32_t> models;
   if (by_model)
     for (const std::uint32_t object : a.objects) models.push_back(options.models[object]);
-  const PairOptions of_sample{
-      .touching = options.touching, .models = models, .within_model = WithinModel::skip};
+  const PairOptions of_sample{.touching = options.touching,
+                              .models = models,
+                              .within_model = by_model ? WithinModel::skip : WithinModel::test};
   if (sets.size() == 2)
     detail::search_pairs(boxes_a, boxes_b, of_sample, sink);
   else

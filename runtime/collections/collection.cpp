@@ -237,7 +237,7 @@ void Collection::require_not_destroyed(const Element& element, std::string_view 
   TESS_CHECK(element.state_.created_after != destroyed_now, element_text(element), claim);
 }
 
-std::uint32_t join_at(Pe& pe, CollectionId id, Round round, std::string element) {
+std::uint32_t join_at(Pe& pe, CollectionId id, RoundId round, std::string element) {
   TESS_CHECK(round.number >= 0 && round.number < most_rounds, element, " cannot join at round ",
              round.number, ": rounds are numbered from 0 to ", most_rounds - 1);
   const auto number = static_cast<std::uint32_t>(round.number);
@@ -272,7 +272,7 @@ void Collection::claim(Element& element, std::int64_t number) {
   TESS_CHECK(ahead >= 0 && (state.ahead >> ahead & 1U) == 0, element_text(element),
              " contributes to round ", number,
              " again, or before it joined: it has not contributed to round ", state.next_reduction,
-             " yet; an inserted element joins at the round that insert(tess::Round{…}, …) names");
+             " yet; an inserted element joins at the round that insert(tess::RoundId{…}, …) names");
   const std::uint32_t before = state.next_reduction;
   state.ahead |= std::uint64_t{1} << ahead;
   for (; (state.ahead & 1U) != 0; state.ahead >>= 1U) ++state.next_reduction;
@@ -282,7 +282,7 @@ void Collection::claim(Element& element, std::int64_t number) {
 }
 
 void Collection::contribute(Element& element, std::unique_ptr<Partial> value,
-                            std::optional<Round> round) {
+                            std::optional<RoundId> round) {
   if (ended_) return;  // its coroutine outlives the array: nothing waits for a result
   require_not_destroyed(element, " contributes in its destructor: contribute before destroy()");
   const Cause cause = cause_of(element);

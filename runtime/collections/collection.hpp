@@ -88,7 +88,7 @@ class Collection : public HostedCollection {
   void apply(const NumberedCall& call);
 
   /// An element of this PE contributes to its next reduction, or to the round that it names.
-  void contribute(Element& element, std::unique_ptr<Partial> value, std::optional<Round> round);
+  void contribute(Element& element, std::unique_ptr<Partial> value, std::optional<RoundId> round);
   /// The partial result to which the element can add its value directly; null if there is none.
   /// After adding, the caller calls contributed().
   [[nodiscard]] Partial* open_sum(Element& element, const PartialKind& kind) {
@@ -390,7 +390,7 @@ Collection& add_collection(Pe& pe, const CollectionKind& kind, CollectionId id, 
                            const std::shared_ptr<const IndexMap>& map);
 /// An element is inserted from this PE that is a member from this round on. Returns what its
 /// constructor call carries.
-[[nodiscard]] std::uint32_t join_at(Pe& pe, CollectionId id, Round round, std::string element);
+[[nodiscard]] std::uint32_t join_at(Pe& pe, CollectionId id, RoundId round, std::string element);
 /// Ends the job: `use`, as "a broadcast of f to", has an empty proxy.
 [[noreturn]] void refuse_empty_proxy(std::string_view use);
 /// Ends the job with the reason why find_collection() is null: the proxy is empty, or `what` has

@@ -40,9 +40,9 @@ std::ostream& operator<<(std::ostream& out, EpochId id);
 
 /// A reduction of an array by its number: 0 is the first one since the array was created or
 /// restored.
-struct Round {
+struct RoundId {
   std::int64_t number = 0;
-  friend constexpr auto operator<=>(const Round&, const Round&) = default;
+  friend constexpr auto operator<=>(const RoundId&, const RoundId&) = default;
 };
 
 }  // namespace tess

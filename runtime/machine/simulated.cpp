@@ -45,7 +45,7 @@ constexpr std::int64_t most_per_step = 64;
 /// Under a fixed cost per message: what the simulation itself may take for one, and the sum beyond
 /// it and beyond what was charged that is reported, if it is also a tenth of what was charged.
 constexpr std::int64_t nanoseconds_per_message = 3'000;
-constexpr std::int64_t nanoseconds_reported = 2'000'000;
+constexpr std::int64_t nanoseconds_reported = 10'000'000;
 /// The program learns with this period that a PE is busy, as on real machines.
 constexpr std::int64_t nanoseconds_busy = 1'000'000;
 

@@ -117,7 +117,8 @@ void Timers::on_alarm(Time at) {
   if (pe_.stopped()) return;
   while (!tables_->waiting.empty() && tables_->waiting.begin()->first.first <= pe_.now()) {
     const auto timer = tables_->waiting.extract(tables_->waiting.begin());
-    pe_.send_uncounted(pe_.id(), timer.mapped());
+    timer.mapped()->counted = false;
+    pe_.put_here(timer.mapped());
   }
   set_alarm();
 }

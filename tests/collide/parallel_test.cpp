@@ -91,7 +91,7 @@ class Client : public Chare<Client, Index1> {
     try {
       collider.submit(std::move(items));
     } catch (const Error& error) {
-      const std::string name = fmt::format("object {} of owner {}", scene.n_boxes - 1, index().x);
+      const std::string name = fmt::format("object {} of owner [{}]", scene.n_boxes - 1, index().x);
       const bool names_it = std::string_view(error.what()).find(name) != std::string_view::npos;
       if (names_it) ++n_refused_;
     }
@@ -413,6 +413,7 @@ TEST_CASE("nothing is sent for one model, and voxels of one model alone are not 
   for (const std::string option : {"--pes=1", "--pes=2", "--sim=pes=3,cost=100ns,seed=5"}) {
     Problem problem;
     problem.scene = {.seed = 4, .n_clients = 3, .n_boxes = 40, .n_models = 1};
+    problem.options.rules.within_model = WithinModel::skip;
     problem.options.voxel_size = {1, 1, 1};
     CAPTURE(option);
     REQUIRE(run_with(option, problem, &collide_apart) == 0);

@@ -552,7 +552,7 @@ tess::Task insert_between_rounds() {
 class Driven : public tess::Chare<Driven> {
  public:
   void give(tess::Callback<int> target) { contribute(tess::sum, 1, target); }
-  void give_to(tess::Round round) {
+  void give_to(tess::RoundId round) {
     contribute(round, tess::sum, 1, array()[{0}].target<&Driven::hear>());
   }
   void hear(int sum) { tess::print("the result is ", sum, "\n"); }
@@ -572,8 +572,8 @@ void insert_unawaited() {
 }
 tess::Task join_too_late() {
   const auto all = tess::create<Driven>(tess::range(1));
-  co_await tess::epoch([&] { all[{0}].send<&Driven::give_to>(tess::Round{0}); });
-  all[{1}].insert(tess::Round{0});
+  co_await tess::epoch([&] { all[{0}].send<&Driven::give_to>(tess::RoundId{0}); });
+  all[{1}].insert(tess::RoundId{0});
 }
 
 auto blocks() {
@@ -603,14 +603,15 @@ const std::map<std::string, std::function<void()>> misuses{
     {"insert_between_rounds", [] { const tess::Task task = insert_between_rounds(); }},
     {"insert_unawaited", &insert_unawaited},
     {"join_too_late", [] { const tess::Task task = join_too_late(); }},
-    {"join_before_all", [] { tess::create<Driven>(tess::range(1))[{1}].insert(tess::Round{-1}); }},
+    {"join_before_all",
+     [] { tess::create<Driven>(tess::range(1))[{1}].insert(tess::RoundId{-1}); }},
     {"round_twice",
      [] {
        const auto all = tess::create<Driven>(tess::range(2));
-       for (int i = 0; i < 2; ++i) all[{1}].send<&Driven::give_to>(tess::Round{0});
+       for (int i = 0; i < 2; ++i) all[{1}].send<&Driven::give_to>(tess::RoundId{0});
      }},
     {"round_far_ahead",
-     [] { tess::create<Driven>(tess::range(2))[{1}].send<&Driven::give_to>(tess::Round{64}); }},
+     [] { tess::create<Driven>(tess::range(2))[{1}].send<&Driven::give_to>(tess::RoundId{64}); }},
     {"end_in_a_gap",
      [] { tess::create<Driven>(tess::range(2))[{1}].send<&Driven::give_and_end>(); }},
     {"different_operations", [] { const tess::Task task = sum_scaled(); }},

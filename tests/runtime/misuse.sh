@@ -59,7 +59,7 @@ here throw_initial "the mould is broken" "Block\[0\], in the constructor Block(i
 here check_inserted "the mould is wrong" "on PE 0, Block\[7\], in the constructor"
 everywhere different_targets "contributions to one reduction have different targets: " "Block::take of Block\\[0\\]" "Block::take of Block\\[1\\]"
 everywhere insert_between_rounds "Overlap\[1\] was created after broadcast 1 and contributes to Overlap: reduction 0, to which broadcast 1 led: rounds overlap, or it contributes without having received the broadcast; insert elements while no round is under way"
-everywhere insert_unawaited "Driven\[2\] contributes first to Driven: reduction .*, by a message that no broadcast of its array led to, but its insertion was not awaited: .* name the rounds, insert(tess::Round{k}, …) and contribute(tess::Round{k}, …)"
+everywhere insert_unawaited "Driven\[2\] contributes first to Driven: reduction .*, by a message that no broadcast of its array led to, but its insertion was not awaited: .* name the rounds, insert(tess::RoundId{k}, …) and contribute(tess::RoundId{k}, …)"
 everywhere join_too_late "Driven\[1\] is inserted to join at round 0, but Driven: reduction 0 is complete"
 here join_before_all "Driven\[1\] cannot join at round -1: rounds are numbered from 0"
 everywhere round_twice "Driven\[1\] contributes to round 0 again, or before it joined: it has not contributed to round 1 yet"

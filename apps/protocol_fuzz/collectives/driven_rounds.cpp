@@ -80,7 +80,7 @@ class DrivenCell : public Chare<DrivenCell, Index1> {
 void insert_driven_children(const ArrayProxy<DrivenCell>& cells, int parent, int call,
                             InsertedBy by) {
   driven->children(parent, call, by, [&](int child) {
-    const tess::Round joins{driven->lives[static_cast<std::size_t>(child)].joins};
+    const tess::RoundId joins{driven->lives[static_cast<std::size_t>(child)].joins};
     Random random = driven->draws(child, call, 1);
     if (random.chance(0.5)) {
       cells[{child}].insert(joins);
@@ -134,10 +134,10 @@ void DrivenCell::give(const DrivenCall& call) {
   insert_driven_children(array(), me, round, InsertedBy::element_first);
   const auto judge = call.judges[driven->judge];
   if (round % 2 == 0) {
-    contribute(tess::Round{round}, AddDrivenTallies{}, DrivenTally{round, round, {me}},
+    contribute(tess::RoundId{round}, AddDrivenTallies{}, DrivenTally{round, round, {me}},
                judge.target<&RoundJudge::judge>());
   } else {
-    contribute(tess::Round{round}, gather, round, judge.target<&RoundJudge::gathered>());
+    contribute(tess::RoundId{round}, gather, round, judge.target<&RoundJudge::gathered>());
   }
   insert_driven_children(array(), me, round, InsertedBy::element_last);
   const DrivenLife& life = driven->lives[static_cast<std::size_t>(me)];

@@ -44,7 +44,10 @@ Lives* lives_of_trial = nullptr;
 
 class Life : public Chare<Life, Index2> {
  public:
-  void begin() { live(); }
+  void begin(int round) {
+    round_ = round;
+    live();
+  }
   void resume_from_sync() {
     lives_of_trial->trial.expect(waiting_, "resumed without waiting: ", element_text(*this));
     waiting_ = false;
@@ -55,12 +58,13 @@ class Life : public Chare<Life, Index2> {
   }
   template <class Ar>
   void serialize(Ar& ar) {
-    ar(phase_, waiting_);
+    ar(phase_, round_, waiting_);
   }
 
  private:
   void live();
   int phase_ = 0;
+  int round_ = 0;  // of its next contribution
   bool waiting_ = false;
 };
 
@@ -84,12 +88,14 @@ void Life::live() {
     ++l.n_contributed;
   }
   charge(std::chrono::microseconds(1 + root % 5));
-  contribute(sum, std::int64_t{1}, collector_of_trial[PeId{0}].target<&Collector::collected>());
+  const RoundId round{round_++};
   if (l.creates(root, path, phase)) {
     const auto child = array()[{root, path * 10 + phase + 1}];
-    child.insert();
-    child.send<&Life::begin>();
+    child.insert(round);
+    child.send<&Life::begin>(round_ - 1);
   }
+  contribute(round, sum, std::int64_t{1},
+             collector_of_trial[PeId{0}].target<&Collector::collected>());
   Random random = l.draws(root, path, phase + 100);
   if (random.chance(l.move_chance)) migrate_to(any_pe(random));
   if (phase_ == l.n_phases(root, path)) {
@@ -241,10 +247,8 @@ void balance_rounds(Trial& trial) {
     collector_of_trial = create_group<Collector>();
     const auto lives = create<Life>(sparse);
     if (!late) start_balancing(lives, options);
-    for (int i = 0; i < n; ++i) {
-      lives[{i, 1}].insert_on(PeId{i % tess::n_pes()});
-      lives[{i, 1}].send<&Life::begin>();
-    }
+    for (int i = 0; i < n; ++i) lives[{i, 1}].insert_on(PeId{i % tess::n_pes()}, RoundId{0});
+    for (int i = 0; i < n; ++i) lives[{i, 1}].send<&Life::begin>(0);
     if (late) start_balancing(lives, options);
   });
   std::map<std::pair<int, int>, int> expected;

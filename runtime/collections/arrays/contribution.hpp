@@ -37,7 +37,7 @@ void check_target(const Element& element, const Callback<T>& target) {
 struct ToArray {
   Element& element;
   Collection& collection;
-  std::optional<Round> round;
+  std::optional<RoundId> round;
 
   [[nodiscard]] Partial* open_sum(const PartialKind& kind) const {
     return round ? nullptr : collection.open_sum(element, kind);
@@ -125,10 +125,10 @@ class TessContributor : public TessIndexedElement<Index> {
 
   /// The same to the round of this number.
   template <class Op, class T, class U>
-  void contribute(Round round, Op op, T value, const Callback<U>& target) {
+  void contribute(RoundId round, Op op, T value, const Callback<U>& target) {
     tess_give(std::move(op), std::move(value), target, round);
   }
-  void contribute(Round round, const Callback<void>& target) {
+  void contribute(RoundId round, const Callback<void>& target) {
     contribute(round, AllThere{}, NoValue{}, target.of_no_value());
   }
 
@@ -149,7 +149,7 @@ class TessContributor : public TessIndexedElement<Index> {
 
  private:
   template <class Op, class T, class U>
-  void tess_give(Op op, T value, const Callback<U>& target, std::optional<Round> round = {}) {
+  void tess_give(Op op, T value, const Callback<U>& target, std::optional<RoundId> round = {}) {
     if constexpr (tess_fits<Op, T, U>()) {
       if (this->collection_ == nullptr) [[unlikely]] {
         const auto held = std::make_shared<std::pair<T, Callback<U>>>(std::move(value), target);

@@ -289,12 +289,13 @@ void ReductionTree::on_begin(const ReductionBegin& begin) {
 }
 
 void ReductionTree::refuse_unawaited(const std::string& element, std::int64_t number) const {
-  check_failed("the round of a value is known", __FILE__, __LINE__,
-               text(element, " contributes first to ", words_.name, " ", number,
-                    ", by a message that no broadcast of its array led to, but its insertion was "
-                    "not awaited: the value may be meant for a later round; name the rounds, "
-                    "insert(tess::Round{k}, …) and contribute(tess::Round{k}, …), or insert it in "
-                    "an awaited epoch while no round is under way"));
+  check_failed(
+      "the round of a value is known", __FILE__, __LINE__,
+      text(element, " contributes first to ", words_.name, " ", number,
+           ", by a message that no broadcast of its array led to, but its insertion was "
+           "not awaited: the value may be meant for a later round; name the rounds, "
+           "insert(tess::RoundId{k}, …) and contribute(tess::RoundId{k}, …), or insert it in "
+           "an awaited epoch while no round is under way"));
 }
 
 void ReductionTree::check_newcomer(const Reported& sum) const {

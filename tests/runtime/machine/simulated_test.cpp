@@ -59,8 +59,8 @@ TEST_CASE("work that a fixed cost leaves out is reported with its sum", "[runtim
     setup.options.report = [&said](const std::string& line) { said += line + "\n"; };
     const auto work = [charges] {
       if (charges && tess::charge(std::chrono::milliseconds(30))) return;
-      const std::int64_t begin = tess::detail::thread_cpu_nanoseconds();
-      while (tess::detail::thread_cpu_nanoseconds() - begin < 30'000'000) {
+      const std::int64_t begin = tess::thread_cpu_nanoseconds();
+      while (tess::thread_cpu_nanoseconds() - begin < 30'000'000) {
       }
     };
     CHECK(tess::run(setup, work) == 0);

@@ -101,12 +101,14 @@ TEST_CASE("a timer is exact in any order of messages", "[runtime][timers]") {
     options.cost = 0ns;
     options.seed = seed;
     std::vector<tess::Time> times;
-    run_on(tess::make_simulated_machine(options), [&times] {
+    run_on(tess::make_simulated_machine(options), [&times]() -> tess::Task {
       const tess::Time begin = tess::now();
       for (const auto delay : {5ms, 1ms})
         tess::after(delay, [&times, begin] { times.push_back(tess::now() - begin); });
+      co_await tess::sleep(7ms);
+      times.push_back(tess::now() - begin);
     });
-    CHECK(times == std::vector<tess::Time>{1ms, 5ms});
+    CHECK(times == std::vector<tess::Time>{1ms, 5ms, 7ms});
   }
 }
 
