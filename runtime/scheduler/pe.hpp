@@ -146,12 +146,6 @@ class Pe {
       enqueue(message);
     }
   }
-  /// The same past the machine, which may order all messages: a timer is exact.
-  void put_here(Envelope* message) {
-    completion_.hop_sent();
-    message->target = id_;
-    enqueue(message);
-  }
   /// Runs a message on this PE before all others but expedited ones that wait already, and before
   /// what an adversary does meanwhile.
   void run_next(Envelope* message) {
@@ -165,6 +159,12 @@ class Pe {
   void send_uncounted(PeId to, Envelope* message) {
     message->counted = false;
     route(to, message);
+  }
+  /// The same on this PE, past the machine, which may order all messages: a timer is exact.
+  void put_uncounted(Envelope* message) {
+    message->counted = false;
+    message->target = id_;
+    enqueue(message);
   }
 
   // Collections.

@@ -117,8 +117,7 @@ void Timers::on_alarm(Time at) {
   if (pe_.stopped()) return;
   while (!tables_->waiting.empty() && tables_->waiting.begin()->first.first <= pe_.now()) {
     const auto timer = tables_->waiting.extract(tables_->waiting.begin());
-    timer.mapped()->counted = false;
-    pe_.put_here(timer.mapped());
+    pe_.put_uncounted(timer.mapped());
   }
   set_alarm();
 }
