@@ -52,7 +52,8 @@ void found_city(State& state, int n_singers) {
 
 /// At most 20 calls, each with a message.
 Timer start_ticks(GroupProxy<Office> offices) {
-  const Time period(machine().virtual_time() ? 1 + static_cast<int>(city->longest) : 200'000);
+  // Messages of a slow kind take a tenth of a virtual second, in which a PE should not only tick.
+  const Time period(machine().virtual_time() ? 50'000 + static_cast<int>(city->longest) : 200'000);
   return every(period, [offices, n = std::make_shared<int>(0)] {
     if (++*n > 20) return;
     ++city->n_ticks_sent;
