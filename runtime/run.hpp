@@ -57,7 +57,8 @@ int run_on(Setup& setup, std::function<void()> main);
 /// A whole program, for main(): takes the runtime's options, runs `body`, returns its exit code. An
 /// Error is printed in one line and gives exit code 2; under mpirun it is printed once if all
 /// processes have the same error in their command line. When `body` runs, `argc` counts the
-/// remaining arguments.
+/// remaining words. A run answers --help and refuses options among them, unless tess::CommandLine
+/// (runtime/command_line.hpp) has read them, or the program itself, which then sets argc to 1.
 int guarded(int& argc, char** argv, const std::function<int(Setup&)>& body);
 
 /// The same for a program that makes no machine or several.
