@@ -3,6 +3,7 @@
 // first keeps what arrived last, the second keeps the greatest version.
 #include "runtime/runtime.hpp"
 #include "runtime/testing.hpp"
+#include "runtime/when.hpp"
 
 struct Versioned {
   int version = 0, value = 0;
@@ -56,13 +57,14 @@ void check_deadline(std::chrono::minutes limit, bool is_in_time) {
   tess::test::for_seeds(0, 100, [=](std::uint64_t seed) {
     bool came = false;
     const tess::test::Machine machine{.pes = 4, .seed = seed};
-    machine.run([&]() -> tess::Task {
+    const auto ask = [&]() -> tess::Task {
       const auto clerks = tess::create<Clerk>(tess::range(4));
       try {
         came = co_await clerks[{2}].ask<&Clerk::answer>().within(limit) == 42;
       } catch (const tess::Error&) {  // no answer within the limit
       }
-    });
+    };
+    machine.run(ask).require_success();
     tess::test::expect(came == is_in_time, limit.count(), " minutes: ", came);
   });
 }

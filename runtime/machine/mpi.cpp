@@ -53,11 +53,14 @@ class MpiMachine final : public Machine, private Network {
     placement_ = {.pinned = enough && options.pinning == Pinning::automatic,
                   .first_core = shared.place * pes_per_process_,
                   .oversubscribed = !enough};
-    transport_ = std::make_unique<Transport>(session_.comm(), n_processes_, options.chunk_bytes);
+    transport_ = std::make_unique<Transport>(session_.comm(), session_.chunk_comm(), n_processes_,
+                                             options.chunk_bytes);
     for (std::int32_t i = 0; i < pes_per_process_; ++i) mail_.push_back(transport_->new_mail());
     team_ = std::make_unique<Team>(first_pe(process_), pes_per_process_, placement_,
                                    static_cast<Network*>(this));
-    must(MPI_Barrier(session_.comm()), "MPI_Barrier");  // the clocks start at the same time
+    // The clocks start at the same time. And the communicators were used by an earlier run: no
+    // process sends before all have ended the receives of that run.
+    must(MPI_Barrier(session_.comm()), "MPI_Barrier");
     start_ = std::chrono::steady_clock::now();
   }
 

@@ -38,10 +38,10 @@ struct MpiOptions {
 [[nodiscard]] bool speaks_for_job();
 
 /// Initialises MPI, and finalises it when destroyed. If the program has initialised MPI, it remains
-/// the program's: the machine communicates through a duplicate of MPI_COMM_WORLD, which it frees,
-/// and several machines may follow one another. Every process of the job calls it; the calling
-/// thread drives the process's first PE. Throws Error for options that are invalid or that differ
-/// between processes.
+/// the program's: the machine communicates through duplicates of MPI_COMM_WORLD, which later
+/// machines use again and which are freed when MPI ends, and several machines may follow one
+/// another. Every process of the job calls it; the calling thread drives the process's first PE.
+/// Throws Error for options that are invalid or that differ between processes.
 [[nodiscard]] std::unique_ptr<Machine> make_mpi_machine(int& argc, char**& argv,
                                                         MpiOptions options);
 

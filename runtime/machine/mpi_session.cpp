@@ -51,6 +51,41 @@ class EndAfter {
 
 constexpr std::chrono::milliseconds finalize_time{200};
 
+/// Of sessions that have ended. One thread makes and ends sessions.
+std::vector<Session::Channel> idle_channels;
+
+/// MPI calls it when it ends.
+int free_channels(MPI_Comm /*self*/, int /*key*/, void* /*value*/, void* /*extra*/) {
+  for (Session::Channel& one : idle_channels) {
+    MPI_Comm_free(&one.comm);
+    MPI_Comm_free(&one.chunk_comm);
+  }
+  idle_channels.clear();
+  return MPI_SUCCESS;
+}
+
+/// The idle channel of the lowest number, which is the same on all processes; otherwise a new one.
+Session::Channel take_channel() {
+  static int n_made = 0;
+  if (!idle_channels.empty()) {
+    const auto lowest = std::ranges::min_element(idle_channels, {}, &Session::Channel::number);
+    const Session::Channel taken = *lowest;
+    idle_channels.erase(lowest);
+    return taken;
+  }
+  if (n_made == 0) {
+    int key = MPI_KEYVAL_INVALID;
+    must(MPI_Comm_create_keyval(MPI_COMM_NULL_COPY_FN, &free_channels, &key, nullptr),
+         "MPI_Comm_create_keyval");
+    must(MPI_Comm_set_attr(MPI_COMM_SELF, key, nullptr), "MPI_Comm_set_attr");
+  }
+  Session::Channel made{n_made++};
+  must(MPI_Comm_dup(MPI_COMM_WORLD, &made.comm), "MPI_Comm_dup");
+  must(MPI_Comm_set_errhandler(made.comm, MPI_ERRORS_RETURN), "MPI_Comm_set_errhandler");
+  must(MPI_Comm_dup(made.comm, &made.chunk_comm), "MPI_Comm_dup");
+  return made;
+}
+
 const char* name_of_level(int level) {
   return level == MPI_THREAD_SINGLE     ? "MPI_THREAD_SINGLE"
          : level == MPI_THREAD_FUNNELED ? "MPI_THREAD_FUNNELED"
@@ -89,14 +124,13 @@ Session::Session(int& argc, char**& argv) {
          ours_ ? "use an MPI built with threads"
                : "initialise it by MPI_Init_thread with MPI_THREAD_SERIALIZED or "
                  "MPI_THREAD_MULTIPLE");
-  must(MPI_Comm_dup(MPI_COMM_WORLD, &comm_), "MPI_Comm_dup");
-  must(MPI_Comm_set_errhandler(comm_, MPI_ERRORS_RETURN), "MPI_Comm_set_errhandler");
+  channel_ = take_channel();
   set_check_abort([] { MPI_Abort(MPI_COMM_WORLD, 1); });
 }
 
 Session::~Session() {
   set_check_abort(nullptr);
-  MPI_Comm_free(&comm_);
+  idle_channels.push_back(channel_);
   if (!ours_) return;
   std::optional<EndAfter> limit;
   if (hurried_code_ >= 0) limit.emplace(finalize_time, hurried_code_);
@@ -105,32 +139,33 @@ Session::~Session() {
 
 std::int32_t Session::n_processes() const {
   int n = 0;
-  must(MPI_Comm_size(comm_, &n), "MPI_Comm_size");
+  must(MPI_Comm_size(comm(), &n), "MPI_Comm_size");
   return n;
 }
 
 std::int32_t Session::process() const {
   int me = 0;
-  must(MPI_Comm_rank(comm_, &me), "MPI_Comm_rank");
+  must(MPI_Comm_rank(comm(), &me), "MPI_Comm_rank");
   return me;
 }
 
 bool Session::agree(std::uint64_t mine) const {
   const std::array<std::uint64_t, 2> both{mine, ~mine};
   std::array<std::uint64_t, 2> least{};
-  must(MPI_Allreduce(both.data(), least.data(), 2, MPI_UINT64_T, MPI_MIN, comm_), "MPI_Allreduce");
+  must(MPI_Allreduce(both.data(), least.data(), 2, MPI_UINT64_T, MPI_MIN, comm()), "MPI_Allreduce");
   return least[0] == ~least[1];  // the smallest is the greatest, on every process alike
 }
 
 std::int32_t Session::least(std::int32_t mine) const {
   std::int32_t least = mine;
-  must(MPI_Allreduce(&mine, &least, 1, MPI_INT32_T, MPI_MIN, comm_), "MPI_Allreduce");
+  must(MPI_Allreduce(&mine, &least, 1, MPI_INT32_T, MPI_MIN, comm()), "MPI_Allreduce");
   return least;
 }
 
-Session::Sharing Session::sharing(const std::string& cpuset) const {
+Session::Sharing Session::sharing(const std::string& cpuset) {
+  if (channel_.sharing) return *channel_.sharing;
   MPI_Comm host = MPI_COMM_NULL;
-  must(MPI_Comm_split_type(comm_, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &host),
+  must(MPI_Comm_split_type(comm(), MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &host),
        "MPI_Comm_split_type");
   int n = 0;
   int me = 0;
@@ -140,8 +175,9 @@ Session::Sharing Session::sharing(const std::string& cpuset) const {
   std::vector<std::uint64_t> all(static_cast<std::size_t>(n));
   must(MPI_Allgather(&mine, 1, MPI_UINT64_T, all.data(), 1, MPI_UINT64_T, host), "MPI_Allgather");
   must(MPI_Comm_free(&host), "MPI_Comm_free");
-  return {static_cast<std::int32_t>(std::count(all.begin(), all.end(), mine)),
-          static_cast<std::int32_t>(std::count(all.begin(), all.begin() + me, mine))};
+  channel_.sharing = {static_cast<std::int32_t>(std::count(all.begin(), all.end(), mine)),
+                      static_cast<std::int32_t>(std::count(all.begin(), all.begin() + me, mine))};
+  return *channel_.sharing;
 }
 
 }  // namespace tess::detail

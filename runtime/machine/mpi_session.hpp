@@ -6,6 +6,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <optional>
 #include <string>
 
 namespace tess::detail {
@@ -23,8 +24,10 @@ class Session {
   Session& operator=(const Session&) = delete;
   ~Session();
 
-  /// The communicator of all processes of the job, and of those on this host.
-  [[nodiscard]] MPI_Comm comm() const { return comm_; }
+  /// Two communicators of all processes of the job, for this session only. They are kept for a later
+  /// session, since a job may have thousands of short runs and making them takes ten exchanges.
+  [[nodiscard]] MPI_Comm comm() const { return channel_.comm; }
+  [[nodiscard]] MPI_Comm chunk_comm() const { return channel_.chunk_comm; }
   [[nodiscard]] std::int32_t n_processes() const;
   [[nodiscard]] std::int32_t process() const;
 
@@ -42,10 +45,17 @@ class Session {
     std::int32_t place = 0;
   };
   /// `cpuset`: the cores of this process, as text.
-  [[nodiscard]] Sharing sharing(const std::string& cpuset) const;
+  [[nodiscard]] Sharing sharing(const std::string& cpuset);
+
+  /// What a session leaves to a later one. Both have drained their messages: no run leaves one.
+  struct Channel {
+    int number = 0;  ///< equal on all processes
+    MPI_Comm comm = MPI_COMM_NULL, chunk_comm = MPI_COMM_NULL;
+    std::optional<Sharing> sharing{};
+  };
 
  private:
-  MPI_Comm comm_ = MPI_COMM_NULL;
+  Channel channel_;
   bool ours_ = false;
   std::atomic<int> hurried_code_{-1};  // -1: no hurry
 };

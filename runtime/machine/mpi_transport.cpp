@@ -20,13 +20,14 @@ constexpr std::size_t least_slot_bytes = 1024;
 
 }  // namespace
 
-Transport::Transport(MPI_Comm comm, std::int32_t n_processes, std::size_t chunk_bytes)
+Transport::Transport(MPI_Comm comm, MPI_Comm chunk_comm, std::int32_t n_processes,
+                     std::size_t chunk_bytes)
     : comm_(comm),
+      chunk_comm_(chunk_comm),
       chunk_bytes_(chunk_bytes),
       whole_bytes_(std::min(chunk_bytes, usual_bytes)),
       slot_bytes_(std::max(whole_bytes_, least_slot_bytes)),
       n_sent_(static_cast<std::size_t>(n_processes)) {
-  must(MPI_Comm_dup(comm_, &chunk_comm_), "MPI_Comm_dup");
   int* bound = nullptr;
   int known = 0;
   must(MPI_Comm_get_attr(chunk_comm_, MPI_TAG_UB, static_cast<void*>(&bound), &known),
@@ -43,7 +44,6 @@ Transport::~Transport() {
     MPI_Cancel(&slot.request);
     MPI_Wait(&slot.request, MPI_STATUS_IGNORE);
   }
-  MPI_Comm_free(&chunk_comm_);
 }
 
 void Transport::send(ProcessId to, Buffer& bytes) {

@@ -32,9 +32,9 @@ namespace tess::detail {
 /// thread.
 class Transport {
  public:
-  /// `chunk_bytes` is the largest size of one MPI message; it is the same on all processes. All
-  /// processes construct their transports together.
-  Transport(MPI_Comm comm, std::int32_t n_processes, std::size_t chunk_bytes);
+  /// `chunk_bytes` is the largest size of one MPI message; it is the same on all processes. The
+  /// communicators are used by nothing else meanwhile.
+  Transport(MPI_Comm comm, MPI_Comm chunk_comm, std::int32_t n_processes, std::size_t chunk_bytes);
   Transport(const Transport&) = delete;
   Transport& operator=(const Transport&) = delete;
   ~Transport();
@@ -90,8 +90,7 @@ class Transport {
   void receive_parts(Incoming* in);
   void receive(std::span<std::byte> memory, Incoming* in);
 
-  MPI_Comm comm_;
-  MPI_Comm chunk_comm_ = MPI_COMM_NULL;
+  const MPI_Comm comm_, chunk_comm_;
   const std::size_t chunk_bytes_;
   const std::size_t whole_bytes_;  // the largest size that is sent without announcement
   const std::size_t slot_bytes_;
