@@ -211,7 +211,7 @@ void search_pairs(std::span<const Box<Real, D>> boxes, const PairOptions& option
   check_voxel_size(options);
   check_count(boxes.size());
   const bool by_model = divides(options);
-  if (!by_model && options.within_model == WithinModel::skip)
+  if (!by_model && options.within_model == WithinModel::skip && !boxes.empty())
     fail(ErrorCode::bad_value, "pairs: WithinModel::skip without models; give one per object");
   if (by_model && options.models.size() != boxes.size())
     fail(ErrorCode::bad_value, "pairs: ", options.models.size(), " models for ", boxes.size(),

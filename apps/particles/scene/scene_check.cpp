@@ -79,7 +79,9 @@ void check_units(const Scene& scene, std::size_t number, double scale) {
 /// A spring pushes along the normal at the start of a step, and an impact bounces on the way: if the
 /// body turns far meanwhile, the one pushes particles through what the other would stop.
 void check_turn(const Scene& scene, std::size_t number) {
-  constexpr double most_turn = 1;  // radian in a step
+  // Radian in a step. Of 300 particles about a wedge 22 tunnel at 1, 21 at 0.15, 3 at 0.1, none at
+  // 0.05.
+  constexpr double most_turn = 0.05;
   const double turn = norm(scene.objects[number].frame.angular_velocity) * scene.dt;
   if (scene.rules.spring && scene.rules.impact && turn > most_turn)
     refuse(scene, number, "].motion.spin: turns ", turn, " rad in a step of dt ", scene.dt,

@@ -95,8 +95,9 @@ class Ticker : public Group<Ticker> {
     int n_ticks = 0;
   };
   void start(Random& random) {
-    // In real time a timer of nanoseconds never lets its core go, which other ranks may share.
-    const std::int64_t least = machine().virtual_time() ? 1 : 200'000;
+    // A timer of nanoseconds never lets its core go, which other ranks may share; in virtual time a
+    // message of a slow kind takes a tenth of a second.
+    const std::int64_t least = machine().virtual_time() ? 20'000 : 200'000;
     const Time period(least + static_cast<std::int64_t>(random.below(shop->longest)));
     const auto n_pes = static_cast<std::uint64_t>(tess::n_pes());
     const PeId to{static_cast<std::int32_t>(random.below(n_pes))};

@@ -103,9 +103,10 @@ TEST_CASE("spring and impact together want a body that turns little in a step",
                     impact = R"("impact": {})";
   CHECK_NOTHROW(parse_scene(scene(spring), "scene.json"));
   CHECK_NOTHROW(parse_scene(scene(impact), "scene.json"));
-  CHECK_THROWS_WITH(parse_scene(scene(spring + ", " + impact), "scene.json"),
-                    Catch::Contains("objects[0].motion.spin: turns 2 rad in a step of dt 0.1, at "
-                                    "most 1 with spring and impact together; give a dt of 0.05"));
+  CHECK_THROWS_WITH(
+      parse_scene(scene(spring + ", " + impact), "scene.json"),
+      Catch::Contains("objects[0].motion.spin: turns 2 rad in a step of dt 0.1, at "
+                      "most 0.05 with spring and impact together; give a dt of 0.0025"));
 }
 
 TEST_CASE("particles that go through a surface are counted, each once", "[particles][physics]") {
