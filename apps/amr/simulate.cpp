@@ -92,9 +92,11 @@ tess::Task simulate(Settings& settings, Outcome& outcome, std::function<void(std
   while (state.step < problem.n_steps) {
     const tess::Time begin = tess::now();
     const std::int32_t from = state.step;
-    const std::int32_t n = std::min(state.change_every, problem.n_steps - from);
+    // A checkpoint of the last step may stand between two changes.
+    const std::int32_t since = from % state.change_every;
+    const std::int32_t n = std::min(state.change_every - since, problem.n_steps - from);
     if (part) part(from);
-    if (from > 0) {
+    if (from > 0 && since == 0) {
       co_await change_tree(blocks);
       co_await take_census(blocks, from * problem.dt, outcome);
       co_await balancer.round();
