@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <limits>
 #include <span>
+#include <utility>
 
 namespace tess {
 
@@ -55,7 +56,7 @@ bool Option::is_given() const {
   return state_->is_given;
 }
 
-CommandLine::CommandLine(const std::string& description) : description_(description) {
+CommandLine::CommandLine(std::string description) : description_(std::move(description)) {
   flag("-h,--help", asks_for_help_, "print this text");
 }
 

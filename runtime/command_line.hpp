@@ -57,7 +57,7 @@ class Option {
 
 class CommandLine {
  public:
-  explicit CommandLine(const std::string& description);
+  explicit CommandLine(std::string description);
   ~CommandLine();
   CommandLine(const CommandLine&) = delete;
   CommandLine& operator=(const CommandLine&) = delete;

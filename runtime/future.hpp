@@ -130,6 +130,8 @@ class Future : public detail::FutureBase {
     replace(other);
     return *this;
   }
+  Future(const Future&) = delete;
+  Future& operator=(const Future&) = delete;
   ~Future() = default;
 
   /// The target that receives the result.

@@ -50,7 +50,7 @@ void OptionState::assign() {
                               : "at most ",
                 is_too_few ? least : most, " values, not ", n_values()));
   for (const std::string& value : values)
-    if (const std::string why = refusal(*this, value); !why.empty()) refuse(name + ": " + why);
+    if (const std::string why = refusal(*this, value); !why.empty()) refuse(text(name, ": ", why));
   if (joint != 0) values = {join(values, joint)};
   access.assign(variable, values);
 }
