@@ -50,6 +50,13 @@ std::string split_text(const TetMesh& mesh) {
   return out;
 }
 
+std::size_t n_unused(const TetMesh& mesh) {
+  std::vector<char> used(mesh.n_points(), 0);
+  for (const Tet& tet : mesh.tets)
+    for (const VertexId v : tet) used[static_cast<std::size_t>(v)] = 1;
+  return static_cast<std::size_t>(std::count(used.begin(), used.end(), 0));
+}
+
 std::string unused_text(std::size_t n_unused, std::size_t n_points) {
   if (n_unused == 0) return {};
   return text(n_unused, " of ", n_points, " vertices belong to no element");

@@ -113,6 +113,8 @@ MeshCensus validate(const TetMesh& mesh);
 /// "27 HEX8 into 162 tetrahedra", and how many are folded; empty if the reader split nothing.
 [[nodiscard]] std::string split_text(const TetMesh& mesh);
 
+/// The number of vertices that belong to no element.
+[[nodiscard]] std::size_t n_unused(const TetMesh& mesh);
 /// "24 of 812 vertices belong to no element"; empty if there are none.
 [[nodiscard]] std::string unused_text(std::size_t n_unused, std::size_t n_points);
 

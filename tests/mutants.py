@@ -181,10 +181,11 @@ def copy_sources(planted_files):
     names = subprocess.run(["git", "ls-files", "-co", "--exclude-standard"], cwd=ROOT, text=True, check=True,
                            capture_output=True).stdout.split("\n")
     names = {name for name in names if name and (ROOT / name).is_file()}
+    kept = names | {"planted.hpp"}  # all planted files include it, so it keeps its time
     for path in list(COPY.rglob("*")) if COPY.exists() else []:
         name = str(path.relative_to(COPY))
-        if path.is_file() and not name.startswith("build/") and name not in names | {"planted.hpp"}:
-            path.unlink()  # planted.hpp keeps its time: all planted files include it
+        if path.is_file() and not name.startswith("build/") and name not in kept:
+            path.unlink()
     for name in sorted(names):
         if name in planted_files:
             write(COPY / name, planted_files[name].encode())

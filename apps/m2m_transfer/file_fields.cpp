@@ -334,12 +334,11 @@ TaskOf<FileFieldsReport> move_file_fields(const FileFieldsRequest& request,
   run.options.on_phase = [&progress](const char* name) { progress.phase(name); };
   report.source = request.source;
   report.target = request.target;
-  for (const auto& [mesh, elements] : {std::pair(&run.source, &report.source_elements),
-                                       std::pair(&run.target, &report.target_elements)})
-    *elements = {skipped_text(*mesh),
-                 split_text(*mesh),
-                 unused_text(validate(*mesh).n_unused, mesh->n_points()),
-                 {}};
+  const auto elements_of = [](const TetMesh& mesh) -> OtherElements {
+    return {skipped_text(mesh), split_text(mesh), unused_text(n_unused(mesh), mesh.n_points()), {}};
+  };
+  report.source_elements = elements_of(run.source);
+  report.target_elements = elements_of(run.target);
   if (request.source == request.target)
     report.source_elements.coincident = coincident_text(run.source);
   const SourceFields fields(request, run.source);

@@ -65,14 +65,10 @@ MeshCensus validate(const TetMesh& mesh) {
   findings.add_points(0, mesh.points);
   findings.add_corners(0, mesh.tets, n);
   findings.refuse_bad_ids(mesh.name, n);
-  std::vector<char> used(mesh.n_points(), 0);
-  for (std::size_t t = 0; t < mesh.n_tets(); ++t) {
-    for (const VertexId v : mesh.tets[t]) used[static_cast<std::size_t>(v)] = 1;
+  for (std::size_t t = 0; t < mesh.n_tets(); ++t)
     findings.add_shape(static_cast<GlobalId>(t), corners_at(mesh, t));
-  }
   findings.refuse_bad_shapes(mesh.name, mesh.n_tets());
-  return {findings.n_flat, findings.n_inverted,
-          static_cast<std::size_t>(std::count(used.begin(), used.end(), 0)), findings.bounds};
+  return {findings.n_flat, findings.n_inverted, n_unused(mesh), findings.bounds};
 }
 
 void validate(const MeshView& mesh) {

@@ -5,7 +5,6 @@
 #include "m2m/parallel/any_piece.hpp"
 #include "runtime/interface.hpp"
 
-#include <string>
 #include <type_traits>
 #include <utility>
 #include <variant>
@@ -33,16 +32,6 @@ class PieceArray {
         [&](const auto& array) {
           using Index = typename std::decay_t<decltype(array)>::Index;
           array[collide::index_of<Index>(piece)].template send<F>(std::forward<Args>(args)...);
-        },
-        array_);
-  }
-
-  /// "[3,4]".
-  [[nodiscard]] std::string text_of(collide::OwnerId piece) const {
-    return std::visit(
-        [piece](const auto& array) {
-          using Index = typename std::decay_t<decltype(array)>::Index;
-          return index_text(collide::index_of<Index>(piece));
         },
         array_);
   }

@@ -64,10 +64,10 @@ void TargetSide::add(const DonorAnswer& answer) {
     const Candidate& mine = answer.candidates[i];
     if (mine.tet == best.candidate.tet && mine.status != Status::outside)
       fail(ErrorCode::bad_mesh, "coupling ", static_cast<std::uint64_t>(setup.id),
-           ": the source pieces ", setup.source.text_of(best.source), " and ",
-           setup.source.text_of(answer.from), " have tetrahedra of the same id ", mine.tet,
+           ": the source pieces ", collide::owner_text(best.source), " and ",
+           collide::owner_text(answer.from), " have tetrahedra of the same id ", mine.tet,
            ": tet_ids are unique in the mesh");
-    if (better(answer.candidates[i], best.candidate)) best = {answer.candidates[i], answer.from};
+    if (better(mine, best.candidate)) best = {mine, answer.from};
   }
   asked.rows = {};
   --n_open_;

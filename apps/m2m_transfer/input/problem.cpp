@@ -100,12 +100,14 @@ TransferReport report_of(const Problem& problem, const Pair& pair, const Request
   const RunMesh& target = problem.target_of(pair);
   report.source = source.name;
   report.target = target.name;
-  for (const auto& [mesh, elements] : {std::pair(&source.survey, &report.source_elements),
-                                       std::pair(&target.survey, &report.target_elements)})
-    *elements = {mesh->skipped,
-                 mesh->split,
-                 unused_text(mesh->census.n_unused, static_cast<std::size_t>(mesh->n_points)),
-                 {}};
+  const auto elements_of = [](const auto& survey) -> OtherElements {
+    return {survey.skipped,
+            survey.split,
+            unused_text(survey.census.n_unused, static_cast<std::size_t>(survey.n_points)),
+            {}};
+  };
+  report.source_elements = elements_of(source.survey);
+  report.target_elements = elements_of(target.survey);
   if (source.name == target.name && source.mesh)
     report.source_elements.coincident = coincident_text(*source.mesh);
   report.policy = request.policy;
