@@ -80,7 +80,7 @@ class Ledger : public Group<Ledger> {
   }
 
  private:
-  /// Of an array of any class.
+  /// Asks about an array of any class.
   static std::pair<std::uint64_t, std::string> destroyed_here(CollectionId array) {
     return ArrayProxy<Ledger>(array).destroyed_here();
   }

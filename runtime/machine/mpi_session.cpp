@@ -51,7 +51,7 @@ class EndAfter {
 
 constexpr std::chrono::milliseconds finalize_time{200};
 
-/// Of sessions that have ended. One thread makes and ends sessions.
+/// Holds what sessions that have ended left. One thread makes and ends sessions.
 std::vector<Session::Channel> idle_channels;
 
 /// MPI calls it when it ends.

@@ -160,7 +160,8 @@ class Pe {
     message->counted = false;
     route(to, message);
   }
-  /// The same on this PE, past the machine, which may order all messages: a timer is exact.
+  /// Puts such a message into the queue of this PE, past the machine, which may order all messages:
+  /// a timer is exact.
   void put_uncounted(Envelope* message) {
     message->counted = false;
     message->target = id_;

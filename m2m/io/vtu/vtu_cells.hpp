@@ -68,8 +68,8 @@ constexpr const VtuCell* vtu_cell(std::int64_t number) {
 }
 
 /// The volume element of a type with this number of vertices, if it is supported. A voxel is a
-/// hexahedron in another order. Lagrange cells of degree 1, and Lagrange
-/// tetrahedra of degree 2, have the points of the other types in the same order.
+/// hexahedron in another order. Lagrange cells of degree 1, and Lagrange tetrahedra of degree 2, have
+/// the points of the other types in the same order.
 constexpr std::optional<ElementType> vtu_volume(std::int64_t number, std::size_t n_vertices) {
   switch (number) {
     case 71:

@@ -123,7 +123,7 @@ class TessContributor : public TessIndexedElement<Index> {
     contribute(AllThere{}, NoValue{}, target.of_no_value());
   }
 
-  /// The same to the round of this number.
+  /// Gives the value to the round of this number.
   template <class Op, class T, class U>
   void contribute(RoundId round, Op op, T value, const Callback<U>& target) {
     tess_give(std::move(op), std::move(value), target, round);

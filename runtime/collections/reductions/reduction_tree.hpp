@@ -185,7 +185,8 @@ class ReductionTree {
   /// with the next. The epoch waits for the delivery of the result.
   void contribute(std::uint32_t number, EpochId epoch, std::unique_ptr<Partial> value,
                   const Cause& cause = {}, Newcomer newcomer = {});
-  /// The same of an element that has been entered with its next number. `named`: it names this one.
+  /// Does the same for an element that has been entered with its next number. `named` says that the
+  /// element names this one.
   void gather(std::uint32_t number, EpochId epoch, std::unique_ptr<Partial> value,
               const Cause& cause, Newcomer newcomer, bool named);
   /// Misuse: the insertion of an element was not awaited, and its first value may be meant for

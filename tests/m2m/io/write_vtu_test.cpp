@@ -316,7 +316,7 @@ TEST_CASE("solids of VTU are split, surfaces skipped, pieces joined, and fields 
   CHECK(rho.values[2 * 19] == 60);
   CHECK(rho.values[2 * 27 + 1] == 71);
 
-  // The same as Lagrange cells of degree 1 and 2.
+  // Lagrange cells of degree 1 and 2 have the same points.
   for (Cells* piece : {&first, &second, &third})
     for (auto& cell : piece->cells)
       for (const auto& [type, lagrange] :
