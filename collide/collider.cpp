@@ -2,6 +2,7 @@
 
 #include "collide/parallel/manager.hpp"
 #include "collide/parallel/neighbours.hpp"
+#include "runtime/core/algorithm.hpp"
 #include "runtime/core/check.hpp"
 #include "runtime/core/error.hpp"
 
@@ -27,18 +28,50 @@ Collider make_collider(const ColliderOptions& options) {
   return collider;
 }
 
-void Collider::submit(const Objects& objects) const {
+namespace {
+
+constexpr auto is_box = [](const Aabb& box) { return is_valid(box); };
+
+}  // namespace
+
+std::size_t Collider::submit(const Objects& objects) const {
+  const std::span<const Aabb> boxes = objects.boxes;
+  const auto first = static_cast<std::uint64_t>(objects.first);
+  // Numbers of more than 32 bits are refused below.
+  if (options.invalid_boxes == InvalidBoxes::leave_out && first + boxes.size() <= 1ULL << 32 &&
+      !std::all_of(boxes.begin(), boxes.end(), is_box)) {
+    std::vector<Item> items;
+    for (std::uint64_t local = first; const Aabb& box : boxes)
+      items.push_back({box, {objects.owner, static_cast<LocalId>(local++), objects.model}});
+    return submit(items, objects.capsules);
+  }
   if (options.slack > 0)
     neighbours.local().submit(objects);
   else
     managers.local().submit(objects);
+  return 0;
 }
 
-void Collider::submit(const std::vector<Item>& items, std::span<const Capsule> capsules) const {
+std::size_t Collider::submit(const std::vector<Item>& items,
+                             std::span<const Capsule> capsules) const {
+  if (options.invalid_boxes == InvalidBoxes::leave_out &&
+      (capsules.empty() || capsules.size() == items.size()) &&
+      !std::all_of(items.begin(), items.end(), [](const Item& i) { return is_valid(i.box); })) {
+    std::vector<Item> rest;
+    std::vector<Capsule> of_rest;
+    for (std::size_t i = 0; i < items.size(); ++i) {
+      if (!is_valid(items[i].box)) continue;
+      rest.push_back(items[i]);
+      if (i < capsules.size()) of_rest.push_back(capsules[i]);
+    }
+    submit(rest, of_rest);
+    return items.size() - rest.size();
+  }
   if (options.slack > 0)
     neighbours.local().submit(items, capsules);
   else
     managers.local().submit(items, capsules);
+  return 0;
 }
 
 namespace {

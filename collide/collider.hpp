@@ -63,9 +63,10 @@ struct Collider {
   GroupProxy<Neighbours> neighbours{};  ///< if there is a slack
 
   /// Pass objects of a client on this PE to the local Manager, or Neighbours, which copies them.
-  /// They throw Error as it does.
-  void submit(const Objects& objects) const;
-  void submit(const std::vector<Item>& items, std::span<const Capsule> capsules = {}) const;
+  /// They throw Error as it does. Return the number of objects that ColliderOptions::invalid_boxes
+  /// leaves out.
+  std::size_t submit(const Objects& objects) const;
+  std::size_t submit(const std::vector<Item>& items, std::span<const Capsule> capsules = {}) const;
   /// The same within the epoch that creates the collider. If it is not known on this PE yet, the
   /// objects are a message that waits for it; then a box that is not valid ends the job.
   void submit_early(Submission objects) const;

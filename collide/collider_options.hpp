@@ -9,6 +9,17 @@
 
 namespace tess::collide {
 
+/// On a simulated machine with a fixed cost per message an item of a part of a search takes so many
+/// nanoseconds. Pieces of long thin objects and kept pairs cost nothing.
+struct SimulatedCosts {
+  double gridding = 0;  ///< per object in a voxel: the voxel is found, and the object sorted there
+  double search = 0;    ///< per object in a voxel that is searched
+  double pair = 0;      ///< per pair that a voxel finds
+  double reply = 0;     ///< per pair and owner that receives it
+  double copy = 0;      ///< per box that is copied for another PE, and again where it is placed
+  double record = 0;    ///< per voxel of a PE that the home of the voxel compares with other PEs'
+};
+
 /// The voxels, and the pairs that are hits.
 struct ColliderOptions {
   Point origin{0, 0, 0};  ///< a lower corner of a voxel, if their size is given
@@ -24,6 +35,8 @@ struct ColliderOptions {
   /// objects are submitted, each within its larger box, the collisions after it test these pairs
   /// alone. The hits are the same. Objects have no capsules then.
   double slack = 0;
+  InvalidBoxes invalid_boxes = InvalidBoxes::refuse;  ///< submit() does it, not submit_early()
+  SimulatedCosts simulated_costs{};
 };
 
 /// What the last collision did, on all PEs.

@@ -55,6 +55,10 @@ struct PairRules {
   WithinModel within_model = WithinModel::test;
 };
 
+/// What becomes of an object whose box is not valid: all that was given with it is refused by an
+/// Error that names it, or it alone is left out, and counted.
+enum class InvalidBoxes { refuse, leave_out };
+
 /// Throws Error (bad_value) with the first item whose box is not valid.
 void check_boxes(std::span<const Item> items);
 

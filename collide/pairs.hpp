@@ -56,8 +56,9 @@ struct PairStatistics {
   /// Pairs whose boxes overlap. If long thin objects are searched in pieces, these are pairs of
   /// pieces.
   std::uint64_t n_candidates = 0;
-  std::uint64_t n_pairs = 0;  ///< pairs that intersect
-  std::size_t bytes = 0;      ///< memory beside the objects
+  std::uint64_t n_pairs = 0;    ///< pairs that intersect
+  std::uint64_t n_invalid = 0;  ///< objects that were left out (PairOptions::invalid_boxes)
+  std::size_t bytes = 0;        ///< memory beside the objects
 };
 
 struct PairOptions {
@@ -67,7 +68,8 @@ struct PairOptions {
   WithinModel within_model = WithinModel::test;
   double voxel_size = 0;  ///< positive and finite; or 0: chosen by expected cost
   PairMethod method = PairMethod::automatic;
-  PairStatistics* statistics = nullptr;  ///< is filled
+  PairStatistics* statistics = nullptr;               ///< is filled
+  InvalidBoxes invalid_boxes = InvalidBoxes::refuse;  ///< left out: capsules are not asked then
 };
 
 namespace detail {
@@ -115,9 +117,31 @@ inline constexpr bool is_box<Box<Real, D>> = true;
 template <class Object>
 using BoxOf = std::remove_cvref_t<decltype(box_of(std::declval<const Object&>()))>;
 
+template <class Object>
+concept HasBox = requires(const Object& object) { box_of(object).lo.size(); };
+template <class A, class B>
+concept CanIntersect = requires(const A& a, const B& b) {
+  { intersect(a, b, Touching::counts) } -> std::convertible_to<bool>;
+};
+
+/// The exact test of two objects whose boxes overlap; of two boxes there is none.
+template <class A, class B>
+[[nodiscard]] bool objects_intersect(const A& a, const B& b, Touching touching) {
+  static_assert((is_box<A> && is_box<B>) || CanIntersect<A, B>,
+                "pairs of objects that are no boxes need bool intersect(const A&, const B&, "
+                "Touching) beside their type");
+  if constexpr (is_box<A> && is_box<B>)
+    return true;
+  else if constexpr (CanIntersect<A, B>)
+    return intersect(a, b, touching);
+}
+
 /// The boxes of objects that are no boxes.
 template <class Object>
 auto boxes_of(std::span<const Object> objects) {
+  static_assert(
+      is_box<Object> || HasBox<Object>,
+      "objects that are searched need Box<Real, D> box_of(const Object&) beside their type");
   if constexpr (is_box<Object>) {
     return objects;
   } else {
@@ -204,12 +228,8 @@ void for_each_pair(std::span<const Object> objects, const PairOptions& options, 
   // Without a branch, which would be mispredicted for every second pair.
   auto ordered = [&](std::uint32_t i, std::uint32_t j) { found(std::min(i, j), std::max(i, j)); };
   const auto test = [&](std::uint32_t i, std::uint32_t j) {
-    if (!wanted(std::min(i, j), std::max(i, j))) return false;
-    if constexpr (detail::is_box<Object>) {
-      return true;
-    } else {
-      return intersect(objects[i], objects[j], options.touching);
-    }
+    return wanted(std::min(i, j), std::max(i, j)) &&
+           detail::objects_intersect(objects[i], objects[j], options.touching);
   };
   detail::for_each_tested(options, test, ordered, [&](detail::PairSink sink) {
     const std::span<const detail::BoxOf<Object>> all(boxes);
@@ -229,12 +249,7 @@ void for_each_pair(std::span<const A> a, std::span<const B> b, const PairOptions
   const auto boxes_a = detail::boxes_of(a);
   const auto boxes_b = detail::boxes_of(b);
   const auto test = [&](std::uint32_t i, std::uint32_t j) {
-    if (!wanted(i, j)) return false;
-    if constexpr (detail::is_box<A> && detail::is_box<B>) {
-      return true;
-    } else {
-      return intersect(a[i], b[j], options.touching);
-    }
+    return wanted(i, j) && detail::objects_intersect(a[i], b[j], options.touching);
   };
   detail::for_each_tested(options, test, found, [&](detail::PairSink sink) {
     const std::span<const detail::BoxOf<A>> all_a(boxes_a), all_b(boxes_b);

@@ -40,6 +40,10 @@ class ArrayProxy : public detail::WholeHandle<ArrayProxy<C>> {
   template <class Of = C>
   void operator[](const typename detail::FewerAxes<n_axes_of<typename Of::Index>>::type&) const =
       delete;
+  template <class Of = C>
+  void operator[](const detail::MoreAxes<n_axes_of<typename Of::Index>>& /*list*/) const {
+    static_assert(sizeof(Of) == 0, "an index has one number for each axis, and no more");
+  }
 
   /// The element of this index if it is on this PE now, otherwise null. It may leave or be
   /// destroyed once the current message is done, unless a coroutine of it waits.

@@ -101,7 +101,8 @@ BalancerProxy start_balancing(ArrayProxy<C> array, const BalanceOptions& options
 }
 
 /// Starts balancing with the user's own strategy: Assignment(const Snapshot&). Elements that may
-/// not move stay, whatever it returns. Throws Error also for an empty function.
+/// not move stay, whatever it returns. It must ask each load for its seconds, because some may be
+/// unknown (balance/load.hpp). Throws Error also for an empty function.
 template <class C>
 BalancerProxy start_balancing(ArrayProxy<C> array, const BalanceOptions& options,
                               balance::Strategy strategy) {

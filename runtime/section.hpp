@@ -101,7 +101,8 @@ class SectionProxy {
 };
 
 /// Makes a section of an array, from any PE. The indices differ from each other; they need not have
-/// elements yet. Returns immediately.
+/// elements yet, but an awaited epoch in which this is called ends only when all of them have had
+/// theirs. Returns immediately.
 template <class C>
 SectionProxy<C> create_section(const ArrayProxy<C>& array, std::vector<typename C::Index> indices) {
   using Index = typename C::Index;

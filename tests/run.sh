@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # The tests, in three tiers; each installs what is missing first.
-#   tests/run.sh        a quarter of an hour: format; one build with all checks; the tests that find planted bugs (tests/mutants.py), with ten
+#   tests/run.sh        a quarter of an hour: format; one build with all checks; the tests that find planted bugs (tests/mutants.py), with 20
 #                       seeds; misuse that must not compile; three programs with the address and undefined-behaviour sanitizers
 #   tests/run.sh full   an hour, before a release: every test in release, tidy, each file alone, the core with the thread sanitizer
 #   tests/run.sh soak   a night: every test with both sanitizers, long seeds, the planted bugs
@@ -64,7 +64,7 @@ finish() {
 
 needed packages bash cmake/setup.sh
 if [[ $tier == quick ]]; then
-  export TESS_SEEDS=${TESS_SEEDS:-10}
+  export TESS_SEEDS=${TESS_SEEDS:-20}
   stage lint bash cmake/lint.sh
   needed build build check quick_tests
   stage tests test_preset check -L quick

@@ -20,13 +20,12 @@ using namespace tess::collide;
 
 /// Times of a PE in a step, since the start of the run; then of all PEs.
 struct Times {
-  std::int64_t first = 0, last = 0, searched = 0;
+  std::int64_t first = 0, last = 0;
   std::uint64_t n_pairs = 0;
 };
 struct JoinTimes {
   Times operator()(const Times& a, const Times& b) const {
-    return {std::max(a.first, b.first), std::max(a.last, b.last), std::max(a.searched, b.searched),
-            a.n_pairs + b.n_pairs};
+    return {std::max(a.first, b.first), std::max(a.last, b.last), a.n_pairs + b.n_pairs};
   }
 };
 
@@ -38,20 +37,17 @@ class Client : public tess::Group<Client> {
   void submit(const Collider& collider, std::int32_t step) {
     times_ = {};
     const std::int32_t me = tess::my_pe().value;
-    for (const Body& body : given_.is_strong ? bodies_of(given_, me, step) : tile_of(given_, me))
-      collider.submit(Objects{owner_of(tess::PeId{me}), body.model, body.boxes});
+    for (const Body& body : given_.is_strong ? bodies_of(given_, me, step) : tile_of(given_, me)) {
+      const bool is_second = given_.two_owners && static_cast<std::uint32_t>(body.model) % 2 == 1;
+      const tess::PeId owner{is_second ? me + tess::n_pes() : me};
+      collider.submit(Objects{owner_of(owner), body.model, body.boxes});
+    }
   }
   void receive(const Hits& hits) { n_received_ += hits.pairs.size(); }
   /// A voxel on this PE has found pairs.
   void found(std::size_t n_pairs) {
-    const std::int64_t begin = tess::now().count();
-    if (times_.n_pairs == 0) times_.first = begin;
-    if (given_.work == Work::model) {
-      tess::charge(std::chrono::nanoseconds(static_cast<std::int64_t>(
-          given_.ns_per_pair * given_.thinned * static_cast<double>(n_pairs))));
-    }
     times_.last = tess::now().count();
-    times_.searched += times_.last - begin;
+    if (times_.n_pairs == 0) times_.first = times_.last;
     times_.n_pairs += n_pairs;
   }
   void gather(tess::Callback<Times> target) { contribute(JoinTimes{}, times_, std::move(target)); }
@@ -66,7 +62,7 @@ class Client : public tess::Group<Client> {
 void charge_and_send(const tess::Callback<Hits>& callback, Hits&& hits) {
   const tess::GroupProxy<Client> clients(tess::from_bytes<tess::CollectionId>(callback.where()));
   if (hits.owner <= hits.other) clients.local().found(hits.pairs.size());
-  const tess::PeId owner{index_of(hits.owner).x};
+  const tess::PeId owner{index_of(hits.owner).x % tess::n_pes()};
   clients[owner].send<&Client::receive>(std::move(hits));
 }
 const tess::Callback<Hits>::Kind charged_owner{tess::naming::name_of<&charge_and_send>(),
@@ -76,9 +72,12 @@ tess::Task run_steps(const Case& given, Row& row) {
   Collider collider;
   tess::GroupProxy<Client> clients;
   const double size = given.voxel_size / std::sqrt(given.thinned);
+  SimulatedCosts costs;
+  for (const PartOfStep& part : parts) costs.*part.cost = given.thinned * (given.costs.*part.cost);
   co_await tess::epoch([&] {
     collider = make_collider({.voxel_size = {size, size, size},
-                              .rules = {.within_model = tess::collide::WithinModel::skip}});
+                              .rules = {.within_model = tess::collide::WithinModel::skip},
+                              .simulated_costs = costs});
     clients = tess::create_group<Client>(given);
   });
   tess::BalancerProxy balancer;
@@ -93,8 +92,7 @@ tess::Task run_steps(const Case& given, Row& row) {
     const std::int64_t end = tess::now().count();
     const Times times = co_await clients.reduce<&Client::gather>();
     const auto since = [&](std::int64_t t) { return 1e-9 * static_cast<double>(t - begin); };
-    steps.push_back({since(end), since(times.first), since(times.last),
-                     1e-9 * static_cast<double>(times.searched), times.n_pairs});
+    steps.push_back({since(end), since(times.first), since(times.last), times.n_pairs});
     if (is_balanced && (step + 1) % given.period == 0) {
       co_await balancer.round();
       co_await tess::epoch([&] { collider.retire(); });
@@ -102,7 +100,6 @@ tess::Task run_steps(const Case& given, Row& row) {
   }
   const CollisionStatistics statistics = co_await collider.statistics();
   row.voxel_size = statistics.grid.voxel_size;
-  row.n_voxels = statistics.grid.n_voxels;
   if (is_balanced)
     for (const tess::balance::Round& round : balancer.history()) {
       row.n_moves += round.n_moved;
@@ -115,22 +112,27 @@ tess::Task run_steps(const Case& given, Row& row) {
     return apps::median(std::move(values));
   };
   row.step = {median_of(&StepTimes::seconds), median_of(&StepTimes::first_hits),
-              median_of(&StepTimes::last_hits), median_of(&StepTimes::searched),
-              steps.back().n_pairs};
+              median_of(&StepTimes::last_hits), steps.back().n_pairs};
 }
 
 }  // namespace
 
 Row run_case(const Case& given) {
-  Row row;
-  row.given = given;
   tess::SimulatedOptions options;
   options.n_pes = given.n_pes;
   options.pes_per_process = given.n_pes == 1 ? 1 : given.per_process;
   options.latency = tess::Time(given.latency_ns);
   options.bandwidth = given.bandwidth / given.thinned;
   if (given.work == Work::model) options.cost = tess::Time(given.message_ns);
-  tess::Setup setup{tess::make_simulated_machine(options), {}};
+  return run_case(given, tess::make_simulated_machine(options));
+}
+
+Row run_case(const Case& given, std::unique_ptr<tess::Machine> machine) {
+  Row row;
+  row.given = given;
+  // The PEs of a process share the crowd that the first call makes.
+  if (given.is_strong) (void)bodies_of(given, 0, 0);
+  tess::Setup setup{std::move(machine), {}};
   const auto begin = std::chrono::steady_clock::now();
   const int code = tess::run(setup, [&] { return run_steps(given, row); });
   if (code != 0) std::exit(code);

@@ -2,45 +2,27 @@
 //
 //     collide_scaling --out PREFIX         weak: two wavy planes, 65 536 triangles per PE
 //     collide_scaling --study strong       a crowd of moving bodies, with the balancer on and off
+//     collide_scaling --check              predicted and measured steps of 1 and 2 PEs only
+#include "apps/collide_scaling/calibrate.hpp"
 #include "apps/collide_scaling/report.hpp"
 #include "apps/plot/write_file.hpp"
 #include "runtime/balance.hpp"
 #include "runtime/command_line.hpp"
 #include "runtime/core/error.hpp"
+#include "runtime/machine/mpi.hpp"
 
 #include <cstdio>
 #include <fmt/core.h>
+#include <optional>
 
 namespace collide_scaling {
 namespace {
 
-/// Sets the voxel size that one PE chooses; and unless it is given what a pair costs, so that the
-/// model takes as long on one PE as was measured there, with its messages.
-void calibrate(Case& given) {
-  Case one = given;
-  one.n_pes = one.thinned = 1;
-  one.steps = 12;
-  one.work = Work::measured;
-  const Row measured = run_case(one);
-  if (!given.is_strong) one.voxel_size = given.voxel_size = measured.voxel_size;
-  if (given.ns_per_pair == 0) {
-    one.work = Work::model;
-    one.steps = 3;
-    const Row messages = run_case(one);
-    given.ns_per_pair = 1e9 * (measured.step.seconds - messages.step.seconds) /
-                        static_cast<double>(measured.step.n_pairs);
-  }
-  fmt::print(
-      "One PE, measured: {:.2f} ms per step, {} voxels of size {:.3g}. Model: {} ns per message, "
-      "{:.1f} ns per pair, latency {} ns, {:.1f} GB/s.\n\n",
-      1e3 * measured.step.seconds, measured.n_voxels, measured.voxel_size, given.message_ns,
-      given.ns_per_pair, given.latency_ns, given.bandwidth / 1e9);
-}
-
 int study(int argc, char** argv) {
   std::string kind = "weak", work = "model", out;
   std::vector<std::int32_t> pes;
-  std::vector<std::string> balances;
+  std::vector<std::string> balances, costs;
+  bool check = false;
   Case given;
   std::uint64_t n_triangles = 0;
   std::int32_t thinned = 0, steps = 0;
@@ -53,7 +35,8 @@ int study(int argc, char** argv) {
       .between(1, 1 << 20);
   line.option("--triangles", n_triangles, "per PE (65536), or of the crowd (262144)")
       .between(2048, std::int64_t{1} << 32);
-  line.option("--steps", steps, "steps, of which the first does not count (4; strong 60)")
+  line.option("--steps", steps,
+              "steps, of which the first does not count (2; measured 4; strong 60)")
       .between(2, 100000);
   line.option("--thinned", thinned,
               "weak: one of so many triangles is there, at so many times the cost "
@@ -62,13 +45,16 @@ int study(int argc, char** argv) {
   line.option("--balance STRATEGY", balances, "strategies, or none (strong: none,greedy_refine)")
       .separated_by(',');
   line.option("--work", work,
-              "model: a fixed time per message and per pair; measured: processor time of all")
+              "model: fixed times of a message and of each part; measured: processor time of all")
       .one_of({"measured", "model"});
   line.option("--message-ns", given.message_ns, "of a PE per message, in the model")
       .between(0, 1'000'000'000);
-  line.option("--pair-ns", given.ns_per_pair,
-              "of a PE per pair, in the model (default: measured now, on one PE)")
-      .positive();
+  line.option("--costs", costs,
+              "of a PE per item of each part, in the model: gridding=9ns,search=20ns,pair=5ns,"
+              "reply=2ns,copy=8ns,record=60ns (default: fitted now, on one PE, and checked)")
+      .separated_by(',');
+  line.flag("--check", check,
+            "predict and measure 1 and 2 PEs, nothing else; two processes with mpirun -n 2");
   line.option("--latency-ns", given.latency_ns, "of a message").between(0, 1'000'000'000);
   line.option("--bandwidth", given.bandwidth, "bytes per second").positive();
   line.option("--per-process", given.per_process, "PEs per process; the machine of one PE has one")
@@ -77,7 +63,8 @@ int study(int argc, char** argv) {
   if (!line.parse(argc, argv, "")) return 0;
   given.is_strong = kind == "strong";
   given.work = work == "model" ? Work::model : Work::measured;
-  given.steps = steps != 0 ? steps : given.is_strong ? 60 : 4;
+  // In the model all steps of the planes but the first are the same.
+  given.steps = steps != 0 ? steps : given.is_strong ? 60 : given.work == Work::model ? 2 : 4;
   given.n_triangles = n_triangles != 0 ? n_triangles : given.is_strong ? 262144 : 65536;
   if (pes.empty() && given.is_strong) pes = {1, 4, 16, 64, 256};
   if (pes.empty()) pes = {1, 4, 16, 64, 256, 1024, 1500};
@@ -97,12 +84,26 @@ int study(int argc, char** argv) {
                  " PEs of --pes do not divide into processes of so many; give --pes as 1 or "
                  "multiples of ",
                  given.per_process, ", or another --per-process");
-  if (given.work == Work::measured && given.ns_per_pair != 0)
-    tess::fail(tess::ErrorCode::bad_value, "--pair-ns ", given.ns_per_pair,
-               ": --work measured has no cost per pair; leave one of them out");
+  given.costs = parse_costs(costs);
+  if (given.work == Work::measured) line.refuse_beside("--work measured", {"--costs", "--check"});
+  if (check) line.refuse_beside("--check", {"--costs"});
+  if (tess::under_mpirun() && (!check || tess::processes_of_job() != 2))
+    tess::fail(tess::ErrorCode::bad_argument,
+               "with mpirun only --check runs, on two processes: mpirun -n 2 ... --check");
   if (!out.empty())
     for (const char* end : {".svg", ".csv"}) plot::require_writable("--out", out + end);
-  if (given.work == Work::model) calibrate(given);
+  bool are_close = true;
+  if (given.work == Work::model) {
+    if (!given.is_strong) given.voxel_size = chosen_voxel_size(given);
+    if (costs.empty()) {
+      const std::optional<bool> found = calibrate(given, argc, argv);
+      if (!found) return 0;
+      are_close = *found;
+    }
+    fmt::print("{} ns per message, latency {} ns, {:.1f} GB/s, --costs {}\n\n", given.message_ns,
+               given.latency_ns, given.bandwidth / 1e9, text_of(given.costs));
+    if (check) return 0;
+  }
   fmt::print("{}", head(given.is_strong));
   std::vector<Row> rows;
   for (const std::int32_t n : pes)
@@ -114,7 +115,10 @@ int study(int argc, char** argv) {
       rows.push_back(run_case(given));
       fmt::print("{}", collide_scaling::line(rows.back(), rows.front()));
       std::fflush(stdout);
+      fmt::print(stderr, "collide_scaling: {} PEs are done after {:.0f} s\n", n,
+                 rows.back().wall_seconds);
     }
+  fmt::print("\n{}\n", conclusion(rows, are_close));
   if (!out.empty()) draw(out, rows);
   // A crowd has the same pairs on every machine.
   for (const Row& row : rows)

@@ -70,21 +70,20 @@ std::vector<Body> tile_of(const Case& given, std::int32_t pe) {
   const std::int32_t wide = columns_of(given.n_pes);
   const auto side = static_cast<std::int32_t>(
       std::sqrt(static_cast<double>(given.n_triangles) / (4 * given.thinned)));
-  const auto corner = [](std::int32_t i, std::int32_t j, double shift) {
-    const double x = i + shift, y = j + shift;
-    return Point{x, y,
-                 4 * collide_scene::sine(i / 32.0) * collide_scene::cosine(j / 32.0) + shift / 1.5};
-  };
   std::vector<Body> out;
   for (const std::uint32_t plane : {0U, 1U}) {
-    const double shift = plane == 0 ? 0 : 0.3;
+    const double shift = plane == 0 ? 0 : 0.3, lift = plane == 0 ? 0 : given.gap;
+    const auto corner = [&](std::int32_t i, std::int32_t j) {
+      return Point{i + shift, j + shift,
+                   4 * collide_scene::sine(i / 32.0) * collide_scene::cosine(j / 32.0) + lift};
+    };
     std::vector<Aabb> boxes;
     boxes.reserve(static_cast<std::size_t>(2 * side * side));
     for (std::int32_t j = pe / wide * side; j < (pe / wide + 1) * side; ++j)
       for (std::int32_t i = pe % wide * side; i < (pe % wide + 1) * side; ++i) {
-        const Point b = corner(i + 1, j, shift), d = corner(i, j + 1, shift);
-        boxes.push_back(box_of(Triangle{{corner(i, j, shift), b, d}}));
-        boxes.push_back(box_of(Triangle{{b, corner(i + 1, j + 1, shift), d}}));
+        const Point b = corner(i + 1, j), d = corner(i, j + 1);
+        boxes.push_back(box_of(Triangle{{corner(i, j), b, d}}));
+        boxes.push_back(box_of(Triangle{{b, corner(i + 1, j + 1), d}}));
       }
     out.push_back({ModelId{plane}, std::move(boxes)});
   }

@@ -24,9 +24,8 @@ std::string head(bool is_strong) {
   return is_strong
              ? "| PEs | balancer | ms per step | of which balancing | moved voxels | speed-up |\n"
                "|---|---|---|---|---|---|\n"
-             : "| PEs | triangles | there | ms per step | plan and exchange | search | hits and "
-               "end | "
-               "efficiency |\n|---|---|---|---|---|---|---|---|\n";
+             : "| PEs | triangles | there | ms per step | gridding and exchange | search | hits "
+               "and end | efficiency |\n|---|---|---|---|---|---|---|---|\n";
 }
 
 std::string line(const Row& row, const Row& first) {
@@ -42,6 +41,16 @@ std::string line(const Row& row, const Row& first) {
       row.given.n_triangles * static_cast<std::uint64_t>(row.given.n_pes), there,
       1e3 * step.seconds, 1e3 * step.first_hits, 1e3 * (step.last_hits - step.first_hits),
       1e3 * (step.seconds - step.last_hits), 100 * efficiency(row, first));
+}
+
+std::string conclusion(const std::vector<Row>& rows, bool is_checked) {
+  const Row& last = rows.back();
+  const char* const how = last.given.work == Work::measured
+                              ? "simulated: the clock of each PE counts its processor time"
+                          : is_checked ? "predicted: simulated PEs pay the costs above"
+                                       : "predicted, and doubtful: see the measurements above";
+  return fmt::format("The efficiency on {} PEs is {:.1f} %, {}.", last.given.n_pes,
+                     100 * efficiency(last, rows.front()), how);
 }
 
 void draw(const std::string& prefix, const std::vector<Row>& rows) {

@@ -13,6 +13,9 @@ namespace collide_scaling {
 /// `first`: the row that the efficiency refers to.
 [[nodiscard]] std::string line(const Row& row, const Row& first);
 
+/// The efficiency of the last row, and how it was got.
+[[nodiscard]] std::string conclusion(const std::vector<Row>& rows, bool is_checked);
+
 /// PREFIX.svg with the efficiency against PEs, and PREFIX.csv beside it.
 void draw(const std::string& prefix, const std::vector<Row>& rows);
 

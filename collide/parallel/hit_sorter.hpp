@@ -52,6 +52,12 @@ class HitSorter {
     }
   }
   [[nodiscard]] bool empty() const noexcept { return lists_.empty(); }
+  /// A pair counts for each owner that receives it.
+  [[nodiscard]] std::size_t size() const noexcept {
+    std::size_t n = 0;
+    for (const Hits& hits : lists_) n += hits.pairs.size();
+    return n;
+  }
   void send(const Callback<Hits>& call) {
     for (Hits& hits : lists_) call(std::move(hits));
   }

@@ -54,6 +54,7 @@ void Manager::begin(std::uint64_t step, const Plan& plan, const Report& report) 
     r.statistics.n_pieces = r.delivery->objects.size();
   }
   r.delivery->sort.run(plan, r.delivery->objects);
+  charge_each(plan.costs.gridding, r.delivery->sort.n_entries());
   if (machine().n_processes() > 1)
     r.delivery->sort.note_places(
         [&](const Index4& voxel) { return voxels_.local(voxel) != nullptr; });
@@ -95,7 +96,12 @@ void Manager::answer_if_asked(std::uint64_t step, Round& r) {
   if (!r.records.is_done()) return;
   const auto asked = r.records.received();
   std::vector<RecordsOf> records;
-  for (const auto& parcel : asked) records.push_back({PeId{parcel.from}, parcel.items});
+  std::size_t n_compared = 0;
+  for (const auto& parcel : asked) {
+    records.push_back({PeId{parcel.from}, parcel.items});
+    if (asked.size() > 1) n_compared += parcel.items.size();
+  }
+  charge_each(r.delivery->plan.costs.record, n_compared);
   const auto answers = answers_to(records, r.delivery->plan.rules.within_model);
   for (std::size_t i = 0; i < asked.size(); ++i) r.answers.put(asked[i].from, answers[i]);
   r.answers.start(sender<&Manager::receive_answers>(step));
@@ -138,10 +144,12 @@ void Manager::deliver(std::uint64_t step) {
       continue;
     }
     r.statistics.grid.n_voxels += answer.maker == pe() ? 1U : 0U;
-    if (!machine().same_process(answer.maker, pe()))
+    if (!machine().same_process(answer.maker, pe())) {
       shipments[answer.maker].add(
           {record.voxel, record.n_natives, record.n_visitors, answer.n_senders},
           std::span(r.delivery->sorted).subspan(r.begin, n));
+      charge_each(r.delivery->plan.costs.copy, n);
+    }
     r.begin += n;
   }
   // What has the longest way leaves first.
@@ -175,6 +183,7 @@ void Manager::deliver_here(const Round& r, std::size_t first, std::uint32_t begi
 /// If a voxel was moved, its objects follow it.
 void Manager::receive_shipment(const Shipment& shipment) {
   shipment.for_each([&](const Shipment::Stop& stop, Part part) {
+    charge_each(part.delivery().plan.costs.copy, part.entries().size());
     voxels_[stop.voxel].send_or_create_here<&Voxel::add>(std::move(part), stop.n_senders);
   });
 }

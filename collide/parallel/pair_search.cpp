@@ -29,7 +29,7 @@ struct TooManyPairs {};
 /// Sorts pairs by the owners of their objects.
 struct Receiver {
   const Report& report;
-  const Touching touching;
+  const Plan& plan;
   const ObjectList* of_a = nullptr;  // of the current search
   const ObjectList* of_b = nullptr;
   HitSorter hits{};
@@ -44,7 +44,7 @@ struct Receiver {
     PiecePairs& pairs = scratch().of_pieces;
     for (std::size_t begin = 0; begin < n; begin += PiecePairs::most) {
       pairs.find(of_first, first + begin, of_second, second + begin,
-                 std::min(n - begin, PiecePairs::most), self.touching);
+                 std::min(n - begin, PiecePairs::most), self.plan.rules.touching);
       self.add(of_first, pairs.x(), of_second, pairs.y(), pairs.size());
     }
   }
@@ -60,6 +60,7 @@ void solve(const PairSets& sets, Receiver& receiver, Search& search) {
   const Problem& problem = sets.problem;
   receiver.of_a = sets.of_a;
   receiver.of_b = sets.of_b;
+  charge_each(receiver.plan.costs.search, problem.a.size() + problem.b.size());
   // Few objects are compared wherever they are.
   const bool is_small = problem.a.size() + problem.b.size() <= search::costs::few_objects;
   const Aabb bounds = is_small ? Aabb{} : search::bounds_of(problem.boxes_a, problem.a);
@@ -68,8 +69,9 @@ void solve(const PairSets& sets, Receiver& receiver, Search& search) {
 
 /// Calls run(search) for a search that has the receiver; false if there were too many pairs.
 template <class Run>
-bool run_search(const Plan& plan, const VoxelProblem& voxel, Receiver& receiver, const Run& run) {
+bool run_search(const VoxelProblem& voxel, Receiver& receiver, const Run& run) {
   Search& search = scratch().search;
+  const Plan& plan = receiver.plan;
   PairOptions options;
   // Boxes of pieces touch where their objects may overlap.
   options.touching = plan.pieces.used ? Touching::counts : plan.rules.touching;
@@ -78,6 +80,8 @@ bool run_search(const Plan& plan, const VoxelProblem& voxel, Receiver& receiver,
   search.restart(options, !options.models.empty(), {&receiver, &Receiver::call});
   try {
     run(search);
+    charge_each(plan.costs.pair, receiver.n_pairs);
+    charge_each(plan.costs.reply, receiver.hits.size());
     return true;
   } catch (const TooManyPairs&) {
     return false;
@@ -89,10 +93,10 @@ bool run_search(const Plan& plan, const VoxelProblem& voxel, Receiver& receiver,
 bool search_at_once(std::span<const Part> parts) {
   VoxelProblem& voxel = scratch().problem;
   const Delivery& delivery = parts.front().delivery();
-  const PairRules& rules = delivery.plan.rules;
-  voxel.gather(parts, rules.within_model);
-  Receiver receiver{delivery.report, rules.touching};
-  const bool found = run_search(delivery.plan, voxel, receiver, [&](Search& search) {
+  voxel.gather(parts, delivery.plan.rules.within_model);
+  charge_each(delivery.plan.costs.copy, voxel.n_copied());
+  Receiver receiver{delivery.report, delivery.plan};
+  const bool found = run_search(voxel, receiver, [&](Search& search) {
     voxel.for_each_search([&](const PairSets& sets) { solve(sets, receiver, search); });
   });
   if (found) receiver.hits.send(delivery.report.call);
@@ -109,9 +113,8 @@ HitSorter PortionSearch::next() {
   while (!remaining_.empty()) {
     const PairSets sets = remaining_.back();
     remaining_.pop_back();
-    Receiver receiver{delivery.report, delivery.plan.rules.touching};
-    if (!run_search(delivery.plan, objects_, receiver,
-                    [&](Search& search) { solve(sets, receiver, search); }))
+    Receiver receiver{delivery.report, delivery.plan};
+    if (!run_search(objects_, receiver, [&](Search& search) { solve(sets, receiver, search); }))
       divide(sets);
     else if (!receiver.hits.empty())
       return std::move(receiver.hits);

@@ -11,8 +11,10 @@
 #include "collide/parallel/octaves.hpp"
 #include "collide/search/slim_capsule.hpp"
 #include "collide/serial/voxel_grid.hpp"
+#include "runtime/run.hpp"
 
 #include <bit>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -74,6 +76,7 @@ struct Plan {
   bool nothing = true;       ///< no pair is possible
   PairRules rules;
   PlanOfPieces pieces;
+  SimulatedCosts costs;
 
   [[nodiscard]] bool has(Level level) const noexcept { return (levels >> level & 1U) != 0; }
   [[nodiscard]] VoxelGrid grid(Level level) const;
@@ -81,6 +84,12 @@ struct Plan {
   [[nodiscard]] Level lowest() const noexcept { return std::countr_zero(levels); }
   [[nodiscard]] Level highest() const noexcept { return 31 - std::countl_zero(levels); }
 };
+
+/// On a simulated machine `n` items of a part take so many nanoseconds each.
+inline void charge_each(double nanoseconds, std::size_t n) {
+  if (nanoseconds != 0) [[unlikely]]
+    charge(Time(std::llround(nanoseconds * static_cast<double>(n))));
+}
 
 /// How many boxes each of so many PEs gives to the sample from which a size of zero is chosen.
 /// Another size needs none. All PEs wait for the sample, so many PEs give few.

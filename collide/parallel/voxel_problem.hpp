@@ -82,6 +82,8 @@ class VoxelProblem {
 
   /// By the positions of the objects in their list, if many models are searched together; or none.
   [[nodiscard]] std::span<const std::uint32_t> models() const { return models_; }
+  /// The boxes that were copied, because a set stood in the lists of several PEs.
+  [[nodiscard]] std::size_t n_copied() const { return merged_.size(); }
 
  private:
   void gather_all(std::span<const Part> parts);

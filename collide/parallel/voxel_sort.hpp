@@ -43,6 +43,8 @@ class VoxelSort {
   void clear();
 
   [[nodiscard]] const std::vector<VoxelRecord>& records() const noexcept { return records_; }
+  /// An object counts in each voxel that it touches.
+  [[nodiscard]] std::size_t n_entries() const noexcept { return n_entries_; }
 
   /// The entries of the voxels that are not left out, voxel after voxel in the order of the
   /// records: first the natives, then the visitors. One answer per record. Called once per sort.

@@ -30,7 +30,7 @@ class Plan {
            const TheBox& bounds) {
     Part whole{{boxes_a.data(), boxes_b.data(), a, b, within}, bounds};
     if (options_.voxel_size > 0) {
-      check_memory(boxes_a, boxes_b, bounds);
+      check_memory(whole, bounds);
       solve(whole);
     } else if (!solved_on_one_level(whole)) {
       Levels levels(*this, whole, 1);
@@ -145,14 +145,15 @@ class Plan {
     return std::max(std::isfinite(voxel) ? voxel : Real{0}, smallest);
   }
 
-  void check_memory(Boxes boxes_a, Boxes boxes_b, const TheBox& bounds) const {
+  void check_memory(const Part& whole, const TheBox& bounds) const {
     const double size = options_.voxel_size;
     double n_entries = 0;
     std::array<double, D> most;  // voxels per axis
     for (std::size_t k = 0; k < D; ++k)
       most[k] = 1 + (static_cast<double>(bounds.hi[k]) - static_cast<double>(bounds.lo[k])) / size;
-    for (const Boxes boxes : {boxes_a, boxes_b})
-      for (const TheBox& box : boxes) {
+    const auto add = [&](const TheBox* boxes, std::span<const Entry> entries) {
+      for (const Entry entry : entries) {
+        const TheBox& box = boxes[object_of(entry)];
         double n = 1;
         for (std::size_t k = 0; k < D; ++k)
           n *= std::min(
@@ -160,7 +161,10 @@ class Plan {
               1 + (static_cast<double>(box.hi[k]) - static_cast<double>(box.lo[k])) / size);
         n_entries += n;
       }
-    const auto n = static_cast<double>(boxes_a.size() + boxes_b.size());
+    };
+    add(whole.problem.boxes_a, whole.problem.a);
+    add(whole.problem.boxes_b, whole.problem.b);
+    const auto n = static_cast<double>(whole.problem.a.size() + whole.problem.b.size());
     if (n_entries > 64 * n + 0x1p20)
       fail(ErrorCode::bad_value, "pairs: voxel size ", size, " puts ", n, " objects into about ",
            n_entries, " voxels, which takes ", 12e-9 * n_entries,
@@ -183,11 +187,25 @@ void check_count(std::size_t n) {
          ": divide the set, or use a collider on several processes");
 }
 
-std::vector<Entry> all_entries(std::size_t n) {
-  std::vector<Entry> out(n);
-  for (std::uint32_t i = 0; i < n; ++i) out[i] = make_entry(i, 0);
-  return out;
-}
+/// The objects of a set that take part, and their bounds.
+template <class Real, std::size_t D>
+struct Searched {
+  std::vector<Entry> entries;
+  Box<Real, D> bounds;
+
+  Searched(std::span<const Box<Real, D>> boxes, const PairOptions& options, const char* set) {
+    const bool all = options.invalid_boxes == InvalidBoxes::refuse;
+    if (all) bounds = checked_bounds(boxes, set);
+    entries.resize(boxes.size());
+    std::size_t n = 0;
+    for (std::uint32_t i = 0; i < boxes.size(); ++i) {
+      entries[n] = make_entry(i, 0);
+      n += all || is_valid(boxes[i]) ? 1U : 0U;
+    }
+    entries.resize(n);
+    if (!all) bounds = bounds_of(boxes.data(), std::span<const Entry>(entries));
+  }
+};
 
 /// The number of models, up to 3, and an object of the second.
 struct Models {
@@ -218,22 +236,23 @@ void search_pairs(std::span<const Box<Real, D>> boxes, const PairOptions& option
          " objects; give one per object");
   const Models models = by_model ? count(options.models) : Models{};
   Plan<Real, D> plan(options, models.n > 2, sink);
-  const Box<Real, D> bounds = checked_bounds(boxes, "");
+  const auto& [entries, bounds] = Searched<Real, D>(boxes, options, "");
   if (models.n == 1) {
     if (options.statistics != nullptr) {
       *options.statistics = {};
-      options.statistics->grid.n_entries = options.statistics->grid.n_left_out = boxes.size();
+      options.statistics->grid.n_entries = options.statistics->grid.n_left_out = entries.size();
     }
-    return;
+  } else if (models.n == 2) {  // which are two sets
+    std::vector<Entry> of_first, of_second;
+    of_first.reserve(entries.size());
+    of_second.reserve(entries.size());
+    for (const Entry entry : entries)
+      (options.models[object_of(entry)] == models.second ? of_second : of_first).push_back(entry);
+    plan.run(boxes, of_first, boxes, of_second, false, bounds);
+  } else {
+    plan.run(boxes, entries, {}, {}, true, bounds);
   }
-  if (models.n != 2) return plan.run(boxes, all_entries(boxes.size()), {}, {}, true, bounds);
-  // Two models are two sets.
-  std::vector<Entry> of_first, of_second;
-  of_first.reserve(boxes.size());
-  of_second.reserve(boxes.size());
-  for (std::uint32_t i = 0; i < boxes.size(); ++i)
-    (options.models[i] == models.second ? of_second : of_first).push_back(make_entry(i, 0));
-  plan.run(boxes, of_first, boxes, of_second, false, bounds);
+  if (options.statistics != nullptr) options.statistics->n_invalid = boxes.size() - entries.size();
 }
 
 template <class Real, std::size_t D>
@@ -246,13 +265,13 @@ void search_pairs(std::span<const Box<Real, D>> a, std::span<const Box<Real, D>>
   check_count(a.size());
   check_count(b.size());
   Plan<Real, D> plan(options, false, sink);
-  const Box<Real, D> bounds_a = checked_bounds(a, " of the first set");
-  const Box<Real, D> bounds_b = checked_bounds(b, " of the second set");
-  if (a.empty() || b.empty()) {
-    if (options.statistics != nullptr) *options.statistics = {};
-    return;
-  }
-  plan.run(a, all_entries(a.size()), b, all_entries(b.size()), false, merged(bounds_a, bounds_b));
+  const Searched<Real, D> of_a(a, options, " of the first set"),
+      of_b(b, options, " of the second set");
+  if (options.statistics != nullptr) *options.statistics = {};
+  if (!of_a.entries.empty() && !of_b.entries.empty())
+    plan.run(a, of_a.entries, b, of_b.entries, false, merged(of_a.bounds, of_b.bounds));
+  if (options.statistics != nullptr)
+    options.statistics->n_invalid = a.size() + b.size() - of_a.entries.size() - of_b.entries.size();
 }
 
 #define TESS_INSTANTIATE(Real, D)                                                          \

@@ -142,6 +142,7 @@ namespace tess::collide::detail {
 template <class Real>
 void search_pairs(std::span<const Box<Real, 3>> boxes, const Capsules& capsules,
                   const PairOptions& options, PairSink sink) {
+  if (options.invalid_boxes == InvalidBoxes::leave_out) return search_pairs(boxes, options, sink);
   const search::ObjectsWithCapsules<Real> set{boxes, capsules};
   const search::ThinSets<Real> sets(&set, 1);
   const std::optional<double> longest = search::choose_pieces(sets, options);
@@ -155,6 +156,7 @@ template <class Real>
 void search_pairs(std::span<const Box<Real, 3>> a, const Capsules& capsules_a,
                   std::span<const Box<Real, 3>> b, const Capsules& capsules_b,
                   const PairOptions& options, PairSink sink) {
+  if (options.invalid_boxes == InvalidBoxes::leave_out) return search_pairs(a, b, options, sink);
   const std::array<search::ObjectsWithCapsules<Real>, 2> both{{{a, capsules_a}, {b, capsules_b}}};
   const search::ThinSets<Real> sets(both);
   const std::optional<double> longest = search::choose_pieces(sets, options);

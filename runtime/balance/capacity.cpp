@@ -9,7 +9,7 @@ namespace {
 double migrating_load(const Snapshot& s) {
   double sum = 0;
   for (std::size_t i = 0; i < s.elements.size(); ++i)
-    if (s.elements.migratable[i]) sum += s.elements.load[i];
+    if (s.elements.migratable[i]) sum += s.elements.load[i].seconds();
   return sum;
 }
 
@@ -21,8 +21,8 @@ std::vector<double> capacities(const Snapshot& s) {
   if (to_place == 0) return std::vector<double>(n, 1.0);
   std::vector<double> busy = s.pes.background;
   for (std::size_t i = 0; i < s.elements.size(); ++i)
-    if (!s.elements.migratable[i])
-      busy[slot(s.elements.pe[i])] += s.elements.load[i] / s.pes.speed[slot(s.elements.pe[i])];
+    if (const std::size_t p = slot(s.elements.pe[i]); !s.elements.migratable[i])
+      busy[p] += s.elements.load[i].seconds() / s.pes.speed[p];
 
   // Fills PEs in order of their time, until the level is below the next PE's time.
   std::vector<std::size_t> order(n);
@@ -41,7 +41,11 @@ std::vector<double> capacities(const Snapshot& s) {
 }
 
 std::vector<double> weights(const Snapshot& s) {
-  if (migrating_load(s) > 0) return s.elements.load;
+  if (migrating_load(s) > 0) {
+    std::vector<double> result;
+    for (const Load load : s.elements.load) result.push_back(load.seconds());
+    return result;
+  }
   const auto n_migrating =
       std::ranges::count_if(s.elements.migratable, [](auto m) { return m != 0; });
   const double share = static_cast<double>(s.pes.size()) /

@@ -1,7 +1,8 @@
 // Time and memory of every PE while a strategy decides. Memory starts with the present placement
 // and follows each decided move: an undecided element still occupies its present PE. So an element
 // can always stay, and the moves, made in the order of decision, never break a limit that held
-// before. Work starts empty, or with the present placement (present()).
+// before. Work starts empty, or with the present placement (present()). An element whose load is
+// unknown has memory, but no work: put() and move() of it throw Error.
 #pragma once
 
 #include "runtime/balance/memory.hpp"
@@ -19,13 +20,15 @@ class Loads {
     return loads;
   }
 
-  void put(std::size_t element, std::size_t pe) { work_[pe] += snapshot_.elements.load[element]; }
+  void put(std::size_t element, std::size_t pe) {
+    work_[pe] += snapshot_.elements.load[element].seconds();
+  }
   void move_memory(std::size_t element, std::size_t from, std::size_t to) {
     memory_.move(element, from, to);
   }
   /// Moves work and memory.
   void move(std::size_t element, std::size_t from, std::size_t to) {
-    work_[from] -= snapshot_.elements.load[element];
+    work_[from] -= snapshot_.elements.load[element].seconds();
     put(element, to);
     move_memory(element, from, to);
   }

@@ -109,7 +109,7 @@ std::vector<LocalPe> local_pes(const Snapshot& s) {
   }
   const Elements& e = s.elements;
   for (std::size_t i = 0; i < e.size(); ++i) {
-    Item item{e.load[i], i, static_cast<std::int64_t>(e.memory_bytes[i]),
+    Item item{e.load[i].seconds(), i, static_cast<std::int64_t>(e.memory_bytes[i]),
               static_cast<std::int64_t>(e.working_bytes_of(i)), e.block_of(i)};
     if (item.block != no_block)
       item.block_bytes = static_cast<std::int64_t>(s.blocks[item.block].bytes);

@@ -1,15 +1,15 @@
 #include "runtime/balance/metrics.hpp"
 
-#include "runtime/balance/loads.hpp"
+#include "runtime/balance/unknown_loads.hpp"
 
 #include <algorithm>
-#include <numeric>
 
 namespace tess::balance {
 
 double average_time(const Snapshot& s) {
-  double work = std::accumulate(s.elements.load.begin(), s.elements.load.end(), 0.0);
-  double speed = 0;
+  const double assumed = mean_load(s);
+  double work = 0, speed = 0;
+  for (const Load load : s.elements.load) work += load.seconds_or(assumed);
   for (std::size_t p = 0; p < s.pes.size(); ++p) {
     work += s.pes.background[p] * s.pes.speed[p];
     speed += s.pes.speed[p];
@@ -19,9 +19,10 @@ double average_time(const Snapshot& s) {
 
 Metrics measure(const Snapshot& s, const Assignment& assignment) {
   Metrics m;
-  Loads loads(s);
+  const double assumed = mean_load(s);
+  std::vector<double> work(s.pes.size(), 0.0);
   for (std::size_t i = 0; i < assignment.size(); ++i) {
-    loads.put(i, slot(assignment[i]));
+    work[slot(assignment[i])] += s.elements.load[i].seconds_or(assumed);
     if (assignment[i] == s.elements.pe[i]) continue;
     ++m.n_moves;
     m.moved_bytes += s.elements.size_bytes[i];
@@ -29,7 +30,8 @@ Metrics measure(const Snapshot& s, const Assignment& assignment) {
   for (const Edge& e : s.edges)
     if (assignment[e.from] != assignment[e.to]) m.external_bytes += e.bytes;
   double slowest = 0;
-  for (std::size_t p = 0; p < s.pes.size(); ++p) slowest = std::max(slowest, loads.time(p));
+  for (std::size_t p = 0; p < s.pes.size(); ++p)
+    slowest = std::max(slowest, s.pes.background[p] + work[p] / s.pes.speed[p]);
   if (const double average = average_time(s); average > 0) m.max_over_average = slowest / average;
   return m;
 }

@@ -1,4 +1,5 @@
-// The quality of an assignment: imbalance, moves, traffic between PEs.
+// The quality of an assignment: imbalance, moves, traffic between PEs. An unknown load counts as the
+// mean of the others.
 #pragma once
 
 #include "runtime/balance/snapshot.hpp"

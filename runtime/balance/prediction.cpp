@@ -22,10 +22,11 @@ Predictor::Predictor(Prediction kind, std::size_t window, std::size_t forget_aft
 void Predictor::record(const Snapshot& measured) {
   ++n_phases_;
   for (std::size_t i = 0; i < measured.elements.size(); ++i) {
-    if (!measured.elements.knows_load(i)) continue;
+    const Load load = measured.elements.load[i];
+    if (!load.is_known()) continue;
     History& history = history_[measured.elements.key[i]];
     if (history.size() == window_) history.erase(history.begin());
-    history.push_back({n_phases_, measured.elements.load[i]});
+    history.push_back({n_phases_, load.seconds()});
   }
   // Searching all histories costs as much as recording, so it is done only now and then.
   if (n_phases_ < purged_at_ + forget_after_ / 4 + 1) return;
@@ -45,7 +46,6 @@ Snapshot Predictor::predict(Snapshot s) const {
     const auto found = history_.find(s.elements.key[i]);
     if (found == history_.end()) continue;
     s.elements.load[i] = next(found->second);
-    if (!s.elements.measured.empty()) s.elements.measured[i] = 1;
   }
   return s;
 }

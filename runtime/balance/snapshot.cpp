@@ -44,7 +44,6 @@ void validate(const Snapshot& s) {
   const std::size_t n_pes = s.pes.size();
   if (e.pe.size() != n || e.load.size() != n || e.migratable.size() != n ||
       e.size_bytes.size() != n || e.memory_bytes.size() != n ||
-      (!e.measured.empty() && e.measured.size() != n) ||
       (!e.position.empty() && e.position.size() != n) || (!e.index.empty() && e.index.size() != n))
     fail(ErrorCode::bad_value, "snapshot: arrays of elements differ in length; give each ", n);
   if (n_pes == 0 || s.pes.background.size() != n_pes || s.pes.memory_limit_bytes.size() != n_pes)
@@ -60,9 +59,8 @@ void validate(const Snapshot& s) {
     if (e.pe[i].value < 0 || slot(e.pe[i]) >= n_pes)
       fail(ErrorCode::out_of_range, "snapshot: element ", i, " on ", e.pe[i], " of ", n_pes,
            " PEs");
-    if (!(e.load[i] >= 0) || !std::isfinite(e.load[i]))
-      fail(ErrorCode::bad_value, "snapshot: element ", i, " has load ", e.load[i],
-           "; give seconds");
+    if (const double load = e.load[i].seconds_or(0); !std::isfinite(load))
+      fail(ErrorCode::bad_value, "snapshot: element ", i, " has load ", load, "; give seconds");
     if (e.position.empty()) continue;
     for (const double x : e.position[i])
       if (!std::isfinite(x))

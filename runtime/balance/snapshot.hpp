@@ -3,6 +3,7 @@
 // element is identified by its position.
 #pragma once
 
+#include "runtime/balance/load.hpp"
 #include "runtime/core/element_key.hpp"
 
 #include <array>
@@ -34,14 +35,13 @@ struct SharedBlock {
 /// No position in Snapshot::blocks: the element uses none.
 inline constexpr std::size_t no_block = std::numeric_limits<std::size_t>::max();
 
-/// All arrays have one entry per element. `position` may be empty if no element has one, `measured`
-/// if all loads are measured, `working_bytes` if all are 0, `block` if no element uses one, and
-/// `index` unless it was asked for (BalanceOptions::indices).
+/// All arrays have one entry per element. `position` may be empty if no element has one,
+/// `working_bytes` if all are 0, `block` if no element uses one, and `index` unless it was asked for
+/// (BalanceOptions::indices).
 struct Elements {
   std::vector<ElementKey> key;
   std::vector<PeId> pe;
-  std::vector<double> load;                 ///< seconds on a PE of speed 1
-  std::vector<std::uint8_t> measured;       ///< 0: the load is unknown and its entry meaningless
+  std::vector<Load> load;                   ///< seconds on a PE of speed 1, or unknown
   std::vector<std::uint8_t> migratable;     ///< 0 stays where it is
   std::vector<std::uint64_t> size_bytes;    ///< packed size: what a migration sends
   std::vector<std::uint64_t> memory_bytes;  ///< resident size: what counts against a memory limit
@@ -50,9 +50,6 @@ struct Elements {
   std::vector<std::size_t> block;               ///< position in Snapshot::blocks, or no_block
   std::vector<std::string> index;               ///< as reports write it: [3], [1,2], ["name"]
   [[nodiscard]] std::size_t size() const { return key.size(); }
-  [[nodiscard]] bool knows_load(std::size_t i) const {
-    return measured.empty() || measured[i] != 0;
-  }
   [[nodiscard]] std::uint64_t working_bytes_of(std::size_t i) const {
     return working_bytes.empty() ? 0 : working_bytes[i];
   }

@@ -30,7 +30,7 @@ class Soonest {
   /// The PE that finishes first with the element, which occupies `from`, among those with room.
   /// `from` always has room.
   [[nodiscard]] std::size_t best(std::size_t element, std::size_t from) const {
-    const double load = snapshot_.elements.load[element];
+    const double load = snapshot_.elements.load[element].seconds();
     Key best{0, 0, from};
     bool found = false;
     for (const auto& one_speed : classes_) {

@@ -1,8 +1,8 @@
 // Strategies by name. A strategy is a pure function from a snapshot to an assignment: equal
 // snapshots and seeds give equal results. Elements that do not migrate stay; no move takes a PE
 // above its memory limit (memory.hpp: a block that elements share counts once per PE), and an
-// element for which there is no room stays. An element of unknown load also stays, and counts as
-// the mean of the others. Each strategy has a file in strategies/.
+// element for which there is no room stays. An element of unknown load also stays; built-in
+// strategies count it as the mean of the others. Each strategy has a file in strategies/.
 #pragma once
 
 #include "runtime/balance/snapshot.hpp"
@@ -34,6 +34,7 @@ using Strategy = std::function<Assignment(const Snapshot&)>;
 [[nodiscard]] std::string obstacle(std::string_view name, const Snapshot& snapshot);
 
 /// Wraps the user's function: its assignment is followed where elements may move and there is room.
+/// The function gets the snapshot as it is: an unknown load is unknown there (load.hpp).
 /// The result throws Error unless the function gives one PE of the snapshot per element.
 [[nodiscard]] Strategy make_strategy(Strategy users);
 

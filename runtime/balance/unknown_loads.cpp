@@ -4,24 +4,24 @@ namespace tess::balance {
 
 std::size_t n_known_loads(const Snapshot& s) {
   std::size_t n = 0;
-  for (std::size_t i = 0; i < s.elements.size(); ++i) n += s.elements.knows_load(i) ? 1U : 0U;
+  for (const Load load : s.elements.load) n += load.is_known() ? 1U : 0U;
   return n;
 }
 
-void assume_mean_loads(Snapshot& s) {
+double mean_load(const Snapshot& s) {
   const std::size_t n_known = n_known_loads(s);
   double sum = 0;
-  for (std::size_t i = 0; i < s.elements.size(); ++i)
-    if (s.elements.knows_load(i)) sum += s.elements.load[i];
-  const double mean = n_known == 0 ? 0 : sum / static_cast<double>(n_known);
-  for (std::size_t i = 0; i < s.elements.size(); ++i)
-    if (!s.elements.knows_load(i)) s.elements.load[i] = mean;
+  for (const Load load : s.elements.load) sum += load.seconds_or(0);
+  return n_known == 0 ? 0 : sum / static_cast<double>(n_known);
 }
 
 Snapshot with_unknown_pinned(Snapshot s) {
-  assume_mean_loads(s);
-  for (std::size_t i = 0; i < s.elements.size(); ++i)
-    if (!s.elements.knows_load(i)) s.elements.migratable[i] = 0;
+  const double mean = mean_load(s);
+  for (std::size_t i = 0; i < s.elements.size(); ++i) {
+    if (s.elements.load[i].is_known()) continue;
+    s.elements.load[i] = mean;
+    s.elements.migratable[i] = 0;
+  }
   return s;
 }
 

@@ -10,10 +10,11 @@ namespace tess::balance {
 /// The number of known loads.
 [[nodiscard]] std::size_t n_known_loads(const Snapshot& snapshot);
 
-/// Replaces unknown loads by the mean of the known ones; by 0 if none is known.
-void assume_mean_loads(Snapshot& snapshot);
+/// The load that is assumed for an unknown one: the mean of the known ones; 0 if none is known.
+[[nodiscard]] double mean_load(const Snapshot& snapshot);
 
-/// The input of a strategy: mean loads for elements of unknown load, which are pinned.
+/// The input of a built-in strategy, which calculates with all loads: mean loads for elements of
+/// unknown load, which are pinned.
 [[nodiscard]] Snapshot with_unknown_pinned(Snapshot snapshot);
 
 }  // namespace tess::balance

@@ -62,6 +62,13 @@ template <>
 struct FewerAxes<5> : std::type_identity<Index4> {};
 template <>
 struct FewerAxes<6> : std::type_identity<Index5> {};
+/// A list of more numbers than an index of n_axes has.
+template <std::int32_t n_axes>
+struct MoreAxes {
+  template <std::integral... X>
+    requires(sizeof...(X) > static_cast<std::size_t>(n_axes))
+  MoreAxes(X... /*x*/) {}  // NOLINT(google-explicit-constructor): it stands for the list
+};
 }  // namespace detail
 
 /// Coordinates of an index that a Range can enumerate: one to six numbers, of which x is the first

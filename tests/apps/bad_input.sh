@@ -192,7 +192,7 @@ refuses "--level 'double'" "$bin/embedded" --pes 1 --level double
 crowd=("$bin/collide_scaling" --study strong --pes 1 --triangles 2048)
 refuses "no balance strategy 'gredy'" "${crowd[@]}" --balance gredy
 refuses "--steps 5: greedy_refine balances after every 5 steps" "${crowd[@]}" --steps 5
-refuses "--pair-ns 3: --work measured has no cost per pair" "${crowd[@]}" --work measured --pair-ns 3
+refuses "--costs pair=3ns does not work with --work measured" "${crowd[@]}" --work measured --costs pair=3ns
 refuses "--pes: Value 0 not in range" "$bin/collide_scaling" --pes 1,0
 refuses "--triangles: Value 0 not in range" "$bin/collide_scaling" --pes 1 --triangles 0
 refuses "--per-process 2: the 3 PEs of --pes do not divide into processes of so many; give .* multiples of 2" "$bin/collide_scaling" --pes 4,3 --per-process 2

@@ -89,7 +89,7 @@ class Client : public Chare<Client, Index1> {
     std::vector<Item> items = boxes_of(scene, index().x);
     items.back().box.hi[1] = std::numeric_limits<double>::quiet_NaN();
     try {
-      collider.submit(std::move(items));
+      n_left_out_ = static_cast<std::int64_t>(collider.submit(items));
     } catch (const Error& error) {
       const std::string name = fmt::format("object {} of owner [{}]", scene.n_boxes - 1, index().x);
       const bool names_it = std::string_view(error.what()).find(name) != std::string_view::npos;
@@ -130,15 +130,18 @@ class Client : public Chare<Client, Index1> {
   void count_refused(Callback<std::int64_t> target) {
     contribute(sum, n_refused_, std::move(target));
   }
+  void count_left_out(Callback<std::int64_t> target) {
+    contribute(sum, n_left_out_, std::move(target));
+  }
 
   template <class Ar>
   void serialize(Ar& ar) {
-    ar(reported_, n_refused_);
+    ar(reported_, n_refused_, n_left_out_);
   }
 
  private:
   Reports reported_;
-  std::int64_t n_refused_ = 0;
+  std::int64_t n_refused_ = 0, n_left_out_ = 0;
 };
 
 struct Problem {
@@ -146,7 +149,7 @@ struct Problem {
   ColliderOptions options;
   std::optional<ModelId> only;
   std::vector<Reports> rounds;  ///< the reports of each collision
-  std::int64_t n_refused = 0;
+  std::int64_t n_refused = 0, n_left_out = 0;
   std::int64_t n_sent_of_one_model = -1, n_sent_of_two_models = -1;
   GridCounts grid;
   std::string error;
@@ -212,6 +215,7 @@ Task collide_bad(Problem& problem) {
       [&] { fixture.clients.broadcast<&Client::submit_bad>(fixture.collider, problem.scene); });
   co_await fixture.collider.run(fixture.report);
   problem.n_refused = co_await fixture.clients.reduce<&Client::count_refused>();
+  problem.n_left_out = co_await fixture.clients.reduce<&Client::count_left_out>();
   co_await gather(fixture, problem);
 }
 
@@ -461,5 +465,16 @@ TEST_CASE("a list with a NaN box is refused as a whole, before any message is se
     REQUIRE(run_with(option, problem, &collide_bad) == 0);
     REQUIRE(problem.n_refused == problem.scene.n_clients);
     REQUIRE(problem.rounds.front().empty());
+    REQUIRE(problem.n_left_out == 0);
+    // The others stand if the collider is told so.
+    problem.options.invalid_boxes = tess::collide::InvalidBoxes::leave_out;
+    problem.rounds.clear();
+    REQUIRE(run_with(option, problem, &collide_bad) == 0);
+    REQUIRE(problem.n_refused == 0);
+    REQUIRE(problem.n_left_out == problem.scene.n_clients);
+    REQUIRE_FALSE(problem.rounds.front().empty());
+    const auto bad = static_cast<tess::collide::LocalId>(problem.scene.n_boxes - 1);
+    for (const auto& reported : problem.rounds.front())
+      REQUIRE((reported.pair.mine != bad && reported.pair.theirs != bad));
   }
 }

@@ -394,6 +394,12 @@ tess::Task sum_with_a_missing_member() {
   (void)co_await sum;
 }
 
+/// The epoch waits for the elements of the section that is created in it.
+tess::Task section_in_an_epoch() {
+  const auto all = tess::create<Stranger>(tess::range(3));
+  co_await tess::epoch([all] { (void)tess::create_section(all, {{0}, {6}}); });
+}
+
 /// Of the section {0, 2, 4}. A result would end the run without an error.
 tess::Task votes_of(std::vector<int> voters) {
   const auto all = tess::create<Stranger>(tess::range(12));
@@ -667,6 +673,7 @@ const std::map<std::string, std::function<void()>> misuses{
     {"section_empty", [] { tess::SectionProxy<Block>().broadcast<&Block::nothing>(); }},
     {"section_empty_ends", [] { tess::SectionProxy<Block>().destroy(); }},
     {"section_without_element", [] { const tess::Task task = sum_with_a_missing_member(); }},
+    {"section_in_an_epoch", [] { const tess::Task task = section_in_an_epoch(); }},
     {"section_of_another", [] { const tess::Task task = vote_elsewhere(); }},
     {"short_element", &carry<Short>},
     {"long_element", &carry<Long>},

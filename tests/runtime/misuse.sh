@@ -123,6 +123,7 @@ here section_twice "the list of a section of .*Block has the index \[0\] twice"
 here section_empty "a broadcast to an empty SectionProxy<.*Block>: assign create_section() to it first"
 here section_empty_ends "destroy() of an empty SectionProxy<.*Block>: assign create_section() to it first"
 everywhere section_without_element "waits for a future of int" "1 message (of the runtime, as for a section with it) on PE . to .*Stranger\[6\], which does not exist"
+everywhere section_in_an_epoch "the epoch that create_section() of .*Stranger ran in waits for .*Stranger\[6\], which does not exist: call it outside of the epoch"
 here section_of_another "Voter\[1\] contributes to a section of another array"
 # What reads other bytes than it wrote, between processes. (With TESS_CHECKS=all it is found where it is sent.)
 for kind in short long; do

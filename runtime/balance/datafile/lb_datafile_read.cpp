@@ -1,5 +1,4 @@
 #include "runtime/balance/datafile/lb_datafile.hpp"
-#include "runtime/balance/unknown_loads.hpp"
 #include "runtime/core/error.hpp"
 
 #include <algorithm>
@@ -154,7 +153,6 @@ class Gathering {
       s_.pes.working_bytes.resize(s_.pes.size(), 0);
       s_.pes.working_bytes[node] = std::max(s_.pes.working_bytes[node], bytes);
     }
-    if (n_known_loads(s_) == s_.elements.size()) s_.elements.measured.clear();
     validate(s_);
     return std::move(s_);
   }
@@ -175,7 +173,6 @@ class Gathering {
     e.index.push_back(entity.has("index") ? entity["index"].dump() : "");
     e.pe.push_back(pe_at(node));
     e.load.push_back(time);
-    e.measured.push_back(1);
     e.migratable.push_back(entity["migratable"].truth());
     e.size_bytes.push_back(0);
     e.memory_bytes.push_back(0);
@@ -199,7 +196,8 @@ class Gathering {
     take("rank_working_bytes", rank_bytes);
     rank_working_bytes_[node] = std::max(rank_working_bytes_[node], rank_bytes);
     if (user.has("shared_id")) read_block(user, node);
-    if (user.has("measured")) e.measured.back() = user["measured"].whole_amount() != 0 ? 1 : 0;
+    if (user.has("measured") && user["measured"].whole_amount() == 0)
+      e.load.back() = Load::unknown();
     if (!user.has("position_x")) return;
     e.position.back() = {user["position_x"].number(), user["position_y"].number(),
                          user["position_z"].number()};

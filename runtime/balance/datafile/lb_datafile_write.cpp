@@ -1,4 +1,5 @@
 #include "runtime/balance/datafile/lb_datafile.hpp"
+#include "runtime/balance/unknown_loads.hpp"
 
 #include <map>
 #include <nlohmann/json.hpp>
@@ -64,10 +65,11 @@ json memory(const Snapshot& s, std::size_t i) {
   return user;
 }
 
-json task(const Identities& identities, const Snapshot& s, std::size_t i) {
+/// An unknown load is written as the `assumed` one, which other programs read.
+json task(const Identities& identities, const Snapshot& s, std::size_t i, double assumed) {
   const Elements& e = s.elements;
   json user = memory(s, i);
-  if (!e.knows_load(i)) user["measured"] = 0;
+  if (!e.load[i].is_known()) user["measured"] = 0;
   if (!e.position.empty()) {
     user["position_x"] = e.position[i][0];
     user["position_y"] = e.position[i][1];
@@ -76,7 +78,7 @@ json task(const Identities& identities, const Snapshot& s, std::size_t i) {
   return {{"entity", identities.entity(e, i)},
           {"node", e.pe[i].value},
           {"resource", "cpu"},
-          {"time", e.load[i]},
+          {"time", e.load[i].seconds_or(assumed)},
           {"user_defined", std::move(user)}};
 }
 
@@ -91,9 +93,10 @@ json communication(const Identities& identities, const Elements& e, const Edge& 
 json document(const Identities& identities, const Phase& phase, std::optional<PeId> rank) {
   const Snapshot& s = phase.snapshot;
   const auto wanted = [&](std::size_t element) { return !rank || s.elements.pe[element] == *rank; };
+  const double assumed = mean_load(s);
   json tasks = json::array(), communications = json::array();
   for (std::size_t i = 0; i < s.elements.size(); ++i)
-    if (wanted(i)) tasks.push_back(task(identities, s, i));
+    if (wanted(i)) tasks.push_back(task(identities, s, i, assumed));
   for (const Edge& edge : s.edges)
     if (wanted(edge.from)) communications.push_back(communication(identities, s.elements, edge));
   json pes = {{"pe_speed", s.pes.speed},

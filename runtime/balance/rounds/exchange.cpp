@@ -45,11 +45,11 @@ void Exchange::hold(const PeReport& report, double speed, std::uint64_t memory_l
       PeSummary{0, report.background, speed, room_of(memory_limit_bytes)});
   n_unknown_ = 0;
   for (std::size_t i = 0; i < report.keys.size(); ++i) {
-    const bool known = report.measured[i] != 0;
-    n_unknown_ += known ? 0U : 1U;
-    local_->hold({known ? report.seconds[i] * speed : 0.0, item_name(pe(), i),
-                  static_cast<std::int64_t>(report.size_bytes[i])},
-                 known && report.migratable[i] != 0);
+    const Load load = report.loads[i];
+    n_unknown_ += load.is_known() ? 0U : 1U;
+    local_->hold(
+        {load.seconds_or(0), item_name(pe(), i), static_cast<std::int64_t>(report.size_bytes[i])},
+        load.is_known() && report.migratable[i] != 0);
   }
 }
 

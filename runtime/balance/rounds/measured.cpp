@@ -60,8 +60,12 @@ void Measured::begin_phase() {
   in_balanced_before_ = meter_.in_balanced();
 }
 
+Load Measured::load_of(const BalanceRecord& record) const {
+  return record.load.known() ? meter_.seconds(record.load.ticks) * speed_ : Load::unknown();
+}
+
 void Measured::keep_as_past(BalanceRecord& record) const {
-  record.past = {record.load.known() ? meter_.seconds(record.load.ticks) * speed_ : -1, -1};
+  record.past = {load_of(record).seconds_or(-1), -1};
 }
 
 void Measured::add(Element& element, std::uint64_t round, PeReport& report) {
@@ -73,9 +77,8 @@ void Measured::add(Element& element, std::uint64_t round, PeReport& report) {
       (record.size_bytes == 0 || (round + key) % rounds_between_weighings == 0))
     record.size_bytes = array_->packed_bytes(element);
   report.keys.push_back({array_->id(), key});
-  report.seconds.push_back(meter_.seconds(record.load.ticks));
+  report.loads.push_back(load_of(record));
   keep_as_past(record);
-  report.measured.push_back(record.load.known() ? 1 : 0);
   report.migratable.push_back(array_->migratable() ? 1 : 0);
   report.size_bytes.push_back(record.size_bytes);
   if (const auto position = array_->position_of(element)) report.positions.push_back(*position);

@@ -66,6 +66,7 @@ class Measured {
 
  private:
   void add(Element& element, std::uint64_t round, PeReport& report);
+  [[nodiscard]] Load load_of(const BalanceRecord& record) const;
   /// Its load is that of the last phase to a checkpoint.
   void keep_as_past(BalanceRecord& record) const;
   [[nodiscard]] double busy_outside(Others others) const;

@@ -1,18 +1,15 @@
 #include "runtime/balance/rounds/pe_report.hpp"
 
-#include "runtime/balance/unknown_loads.hpp"
-
 #include <boost/unordered/unordered_flat_map.hpp>
 
 namespace tess::balance {
 namespace {
 
-void append(Snapshot& s, const PeReport& report, std::size_t pe, double speed) {
+void append(Snapshot& s, const PeReport& report, std::size_t pe) {
   Elements& e = s.elements;
   e.key.insert(e.key.end(), report.keys.begin(), report.keys.end());
   e.pe.insert(e.pe.end(), report.keys.size(), pe_at(pe));
-  for (const double seconds : report.seconds) e.load.push_back(seconds * speed);
-  e.measured.insert(e.measured.end(), report.measured.begin(), report.measured.end());
+  e.load.insert(e.load.end(), report.loads.begin(), report.loads.end());
   e.migratable.insert(e.migratable.end(), report.migratable.begin(), report.migratable.end());
   e.size_bytes.insert(e.size_bytes.end(), report.size_bytes.begin(), report.size_bytes.end());
   e.position.insert(e.position.end(), report.positions.begin(), report.positions.end());
@@ -25,17 +22,14 @@ Snapshot snapshot_of(const std::vector<PeReport>& reports, const BalanceOptions&
   Snapshot s;
   bool any_parcels = false;
   for (std::size_t pe = 0; pe < reports.size(); ++pe) {
-    const double speed = options.speeds.empty() ? 1 : options.speeds[pe];
-    append(s, reports[pe], pe, speed);
+    append(s, reports[pe], pe);
     s.pes.background.push_back(reports[pe].background);
-    s.pes.speed.push_back(speed);
+    s.pes.speed.push_back(options.speeds.empty() ? 1 : options.speeds[pe]);
     s.pes.memory_limit_bytes.push_back(
         options.memory_limit_bytes.empty() ? 0 : options.memory_limit_bytes[pe]);
     any_parcels = any_parcels || !reports[pe].parcels.empty();
   }
   s.elements.memory_bytes = s.elements.size_bytes;
-  if (n_known_loads(s) == s.elements.size()) s.elements.measured.clear();
-  assume_mean_loads(s);
   // If one element gives no position, no position is used: a strategy needs all.
   if (s.elements.position.size() != s.elements.size()) s.elements.position.clear();
   if (!any_parcels) return s;

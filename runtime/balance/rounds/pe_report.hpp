@@ -25,8 +25,7 @@ struct Parcel {
 /// Arrays have one entry per element of the PE; positions and indices may be empty instead.
 struct PeReport {
   std::vector<ElementKey> keys;
-  std::vector<double> seconds;         ///< measured on this PE, at its speed
-  std::vector<std::uint8_t> measured;  ///< 0: `seconds` is not of a whole phase
+  std::vector<Load> loads;
   std::vector<std::uint8_t> migratable;
   std::vector<std::uint64_t> size_bytes;
   std::vector<std::array<double, 3>> positions;
@@ -36,8 +35,7 @@ struct PeReport {
   double background = 0;  ///< seconds busy outside of these elements
 };
 
-/// Combines the reports, in PE order. Parcels to elements without a report are left out; unknown
-/// loads count as the mean of the others.
+/// Combines the reports, in PE order. Parcels to elements without a report are left out.
 [[nodiscard]] Snapshot snapshot_of(const std::vector<PeReport>& reports,
                                    const BalanceOptions& options);
 

@@ -3,6 +3,7 @@
 #include "runtime/balance/soonest.hpp"
 
 #include <algorithm>
+#include <functional>
 
 namespace tess::balance {
 
@@ -10,8 +11,8 @@ std::vector<std::size_t> heaviest_first(const Snapshot& s) {
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < s.elements.size(); ++i)
     if (s.elements.migratable[i]) order.push_back(i);
-  const auto& load = s.elements.load;
-  std::ranges::stable_sort(order, [&](auto a, auto b) { return load[a] > load[b]; });
+  const auto load = [&](std::size_t i) { return s.elements.load[i].seconds(); };
+  std::ranges::stable_sort(order, std::greater{}, load);
   return order;
 }
 

@@ -17,17 +17,18 @@ std::vector<std::size_t> shed(const Snapshot& s, double limit) {
   std::vector<double> excess;
   for (std::size_t p = 0; p < s.pes.size(); ++p)
     excess.push_back((now.time(p) - limit) * s.pes.speed[p]);
+  const auto load = [&](std::size_t i) { return s.elements.load[i].seconds(); };
   std::vector<bool> leaves(s.elements.size(), false);
   const std::vector<std::size_t> order = heaviest_first(s);
   const auto leave = [&](std::size_t i) {
     leaves[i] = true;
-    excess[slot(s.elements.pe[i])] -= s.elements.load[i];
+    excess[slot(s.elements.pe[i])] -= load(i);
   };
   for (const std::size_t i : order)
-    if (s.elements.load[i] > 0 && s.elements.load[i] <= excess[slot(s.elements.pe[i])]) leave(i);
+    if (load(i) > 0 && load(i) <= excess[slot(s.elements.pe[i])]) leave(i);
   for (auto i = order.rbegin(); i != order.rend(); ++i) {
     const double rest = excess[slot(s.elements.pe[*i])];
-    if (!leaves[*i] && rest > 0 && s.elements.load[*i] >= rest) leave(*i);
+    if (!leaves[*i] && rest > 0 && load(*i) >= rest) leave(*i);
   }
   std::vector<std::size_t> result;
   std::ranges::copy_if(order, std::back_inserter(result), [&](auto i) { return leaves[i]; });

@@ -20,8 +20,8 @@ class Refinement {
       const std::size_t pe = slot(result_[i]);
       loads_.put(i, pe);
       loads_.move_memory(i, slot(s.elements.pe[i]), pe);
-      if (s.elements.migratable[i] && s.elements.load[i] > 0)
-        on_[pe].emplace(s.elements.load[i], i);
+      if (const double load = s.elements.load[i].seconds(); s.elements.migratable[i] && load > 0)
+        on_[pe].emplace(load, i);
     }
     for (std::size_t p = 0; p < s.pes.size(); ++p) by_time_.emplace(loads_.time(p), p);
   }
@@ -77,7 +77,7 @@ class Refinement {
     loads_.move(element, from, to);
     by_time_.emplace(loads_.time(from), from);
     by_time_.emplace(loads_.time(to), to);
-    on_[to].insert(on_[from].extract({s_.elements.load[element], element}));
+    on_[to].insert(on_[from].extract({s_.elements.load[element].seconds(), element}));
     result_[element] = pe_at(to);
   }
 

@@ -105,6 +105,7 @@ class SectionListsOf final : public SectionLists {
   struct Root {
     SectionRoster roster;
     std::vector<Index> indices;  // of the members
+    EpochId epoch{};             // waits until all indices have had their element
     std::uint64_t last_number = 0;
     std::uint64_t generation = 0;
     std::uint64_t n_calls = 0;         // of this generation
@@ -214,6 +215,7 @@ void SectionListsOf<Index>::on_create(Create&& create) {
   part.total.begin(create.indices.size());
   root.roster.create(create.indices.size());
   root.indices = std::move(create.indices);
+  root.epoch = create.epoch;
   for (std::uint32_t ordinal = 0; const Index& index : root.indices) {
     completion().sent(create.epoch);
     auto* join =
@@ -464,14 +466,20 @@ template <class Index>
 void SectionListsOf<Index>::describe_waiting(std::vector<std::string>& lines) const {
   for (const auto& [id, of] : lists_) {
     const SectionRoster& roster = of.root.roster;
-    if (roster.n_unjoined() == 0 || of.root.kept.empty()) continue;
+    const std::size_t n_kept = of.root.kept.size();
+    if (roster.n_unjoined() == 0 || (n_kept == 0 && of.root.epoch == EpochId{})) continue;
     std::size_t missing = 0;
     while (roster.members()[missing].state != SectionRoster::State::unjoined) ++missing;
-    lines.push_back(text(
-        of.root.kept.size(), of.root.kept.size() == 1 ? " multicast" : " multicasts",
-        " of a section of ", array_.name(), of.root.kept.size() == 1 ? " waits" : " wait", " for ",
-        array_.name(), index_text(of.root.indices[missing]),
-        roster.n_unjoined() > 1 ? " and others, which do not exist" : ", which does not exist"));
+    const std::string waits = text(
+        " for ", array_.name(), index_text(of.root.indices[missing]),
+        roster.n_unjoined() > 1 ? " and others, which do not exist" : ", which does not exist");
+    if (n_kept != 0)
+      lines.push_back(text(n_kept, n_kept == 1 ? " multicast" : " multicasts", " of a section of ",
+                           array_.name(), n_kept == 1 ? " waits" : " wait", waits));
+    if (of.root.epoch != EpochId{})
+      lines.push_back(text("the epoch that create_section() of ", array_.name(), " ran in waits",
+                           waits,
+                           ": call it outside of the epoch, or with the elements there are"));
   }
 }
 

@@ -31,7 +31,8 @@ class Crowd : public Chare<Crowd> {
         items.push_back({boxes[0],
                          {owner_of(index()), static_cast<LocalId>(i),
                           static_cast<ModelId>(2 * i + index().x)}});
-      return collider.submit(items);
+      collider.submit(items);
+      return;
     }
     std::vector<Capsule> capsules;
     if (in_pieces) capsules = test::capsules_of_boxes(boxes);

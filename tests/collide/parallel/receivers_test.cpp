@@ -1,4 +1,4 @@
-// Which owners receive a pair.
+// Which owners receive a pair, and what a simulated machine charges for it.
 #include "collide/collider.hpp"
 #include "collide/parallel/object_list.hpp"
 #include "runtime/machine/threads.hpp"
@@ -48,22 +48,26 @@ Setup setup_of(std::string option) {
   return take_options(argc, argv.data());
 }
 
-/// What the two clients receive.
+/// What the two clients receive. `time`: of the collision.
 std::vector<std::int64_t> received(const std::string& option, Receivers receivers,
-                                   std::array<std::int32_t, 2> n_each) {
+                                   std::array<std::int32_t, 2> n_each,
+                                   const SimulatedCosts& costs = {}, Time* time = nullptr) {
   Setup setup = setup_of(option);
   std::vector<std::int64_t> counts;
   const auto program = [&]() -> Task {
     Collider collider;
     ArrayProxy<Row> rows;
     co_await epoch([&] {
-      collider =
-          make_collider({.voxel_size = {4, 4, 4}, .rules = {.within_model = WithinModel::skip}});
+      collider = make_collider({.voxel_size = {4, 4, 4},
+                                .rules = {.within_model = WithinModel::skip},
+                                .simulated_costs = costs});
       rows = create<Row>(range(2));
     });
     co_await epoch([&] { rows.broadcast<&Row::submit>(collider, n_each); });
     const Report report{report_to<&Row::receive>(rows), {}, receivers};
+    const Time begin = now();
     co_await collider.run(report);
+    if (time != nullptr) *time = now() - begin;
     counts = co_await rows.reduce<&Row::gather>();
   };
   REQUIRE(run(setup, [&]() -> Task { return program(); }) == 0);
@@ -169,6 +173,25 @@ TEST_CASE("with two owners on one PE, one of them receives a pair on request",
     const std::vector<std::int64_t> counts = received("--pes=1", receivers, {3, 3});
     CHECK(counts[0] + counts[1] == (receivers == Receivers::one_owner ? 9 : 18) * n_places);
   }
+}
+
+TEST_CASE("a simulated PE pays once for each item of each part of a collision",
+          "[collide][parallel]") {
+  const auto time = [](const std::string& pes, const SimulatedCosts& costs) {
+    Time out{};
+    (void)received("--sim=cost=100ns,pes=" + pes, Receivers::both_owners, {1, 1}, costs, &out);
+    return out.count();
+  };
+  const auto paid = [&](const SimulatedCosts& costs) { return time("1", costs) - time("1", {}); };
+  CHECK(paid({.gridding = 1}) == 2 * n_places);
+  CHECK(paid({.search = 1}) == 2 * n_places);
+  CHECK(paid({.gridding = 0.5, .pair = 10}) == 11 * n_places);
+  CHECK(paid({.reply = 1}) == 2 * n_places);
+  // Several PEs copy boxes and compare records, but within a process nothing is copied.
+  CHECK(paid({.copy = 1, .record = 1}) == 0);
+  CHECK(time("2", {.copy = 1000}) == time("2", {}));
+  for (const SimulatedCosts& costs : {SimulatedCosts{.copy = 1000}, SimulatedCosts{.record = 1000}})
+    CHECK(time("2,per-process=1", costs) > time("2,per-process=1", {}) + 1000 * n_places / 4);
 }
 
 TEST_CASE("objects whose numbers do not fit into 32 bits are refused, and none is accepted",

@@ -324,4 +324,11 @@ TEST_CASE("a thin object that is not valid, and a list of models that is too sho
   REQUIRE_THROWS_WITH(count_pairs(all), Catch::Contains("of object 17 is not valid"));
   REQUIRE_THROWS_WITH(count_pairs(all.first(10), all),
                       Catch::Contains("of object 17 of the second set"));
+  // The others stand if they are told to.
+  const PairOptions others{.invalid_boxes = tess::collide::InvalidBoxes::leave_out};
+  std::vector<Triangle> valid = needles;
+  valid.erase(valid.begin() + 17);
+  const std::uint64_t n = count_pairs(std::span<const Triangle>(valid));
+  REQUIRE(n > 0);
+  REQUIRE(count_pairs(all, others) == n);
 }

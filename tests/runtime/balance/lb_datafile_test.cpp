@@ -24,7 +24,6 @@ void require_same(const Snapshot& a, const Snapshot& b) {
   REQUIRE(a.elements.key == b.elements.key);
   REQUIRE(a.elements.pe == b.elements.pe);
   REQUIRE(a.elements.load == b.elements.load);
-  REQUIRE(a.elements.measured == b.elements.measured);
   REQUIRE(a.elements.migratable == b.elements.migratable);
   REQUIRE(a.elements.size_bytes == b.elements.size_bytes);
   REQUIRE(a.elements.memory_bytes == b.elements.memory_bytes);
@@ -121,13 +120,12 @@ TEST_CASE("a file has the indices of elements as arrays", "[balance][lb_datafile
 
 TEST_CASE("a file tells loads that are not known from others", "[balance][lb_datafile]") {
   Snapshot s = mod_seven(Start::blocks);
-  s.elements.measured.assign(64, 1);
-  s.elements.measured[5] = 0;
+  s.elements.load[5] = Load::unknown();
   const std::string text = write_lb_datafile({{0, s}});
   const Snapshot back = parse_lb_datafiles({{"data.0.json", text}}).at(0).snapshot;
   for (std::size_t i = 0; i < 64; ++i) {
     INFO(i);
-    CHECK(back.elements.knows_load(i) == (back.elements.key[i].element != 5));
+    CHECK(back.elements.load[i].is_known() == (back.elements.key[i].element != 5));
   }
 }
 
@@ -180,7 +178,7 @@ TEST_CASE("files as vt writes them are read, one per rank", "[balance][lb_datafi
   REQUIRE(s.elements.size() == 3);
   CHECK(s.elements.key[0] == ElementKey{CollectionId{7}, 3});
   CHECK(s.elements.key[2] == ElementKey{CollectionId{7}, 524295});
-  CHECK(s.elements.load == std::vector<double>{0.25, 0, 0.5});
+  CHECK(s.elements.load == std::vector<Load>{0.25, 0, 0.5});
   CHECK(s.elements.migratable == std::vector<std::uint8_t>{1, 0, 1});
   CHECK(s.elements.position.empty());
   CHECK(s.edges == std::vector<Edge>{{0, 2, 100, 2}});

@@ -14,12 +14,14 @@ tess::balance::Assignment bands(const tess::balance::Snapshot& snapshot) {
   std::vector<std::size_t> order(elements.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::ranges::sort(order, {}, [&](std::size_t i) { return elements.position[i]; });
-  const double all = std::accumulate(elements.load.begin(), elements.load.end(), 0.0);
+  const auto load = [&](std::size_t i) { return elements.load[i].seconds_or(0); };
+  double all = 0;
+  for (const std::size_t i : order) all += load(i);
   tess::balance::Assignment result(elements.size());
   double before = 0;
   for (const std::size_t i : order) {
-    const double middle = (before + elements.load[i] / 2) / all;  // 0 … 1
-    before += elements.load[i];
+    const double middle = (before + load(i) / 2) / all;  // 0 … 1
+    before += load(i);
     result[i] = tess::balance::pe_at(
         static_cast<std::size_t>(middle * static_cast<double>(snapshot.pes.size())));
   }

@@ -62,8 +62,8 @@ TEST_CASE("an element that comes back meets its history, one that stays away is 
   trend.record(phase({-1, 10}));
   CHECK(trend.load(key(0)) == Approx(4));  // phase 4 of a load that is the phase's number
   const Snapshot back = trend.predict(phase({100, 100, 100}));
-  CHECK(back.elements.load[0] == Approx(4));
-  CHECK(back.elements.load[1] == Approx(10));
+  CHECK(back.elements.load[0].seconds() == Approx(4));
+  CHECK(back.elements.load[1].seconds() == Approx(10));
   CHECK(back.elements.load[2] == 100);  // never seen
   for (int k = 0; k < 3; ++k) trend.record(phase({-1, 10}));
   CHECK(trend.n_known() == 1);

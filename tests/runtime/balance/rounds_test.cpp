@@ -18,8 +18,7 @@ class Phases {
       PeReport report;
       for (std::size_t i = 0; i < loads[pe].size(); ++i) {
         report.keys.push_back({CollectionId{7}, 100 * pe + i});
-        report.seconds.push_back(loads[pe][i]);
-        report.measured.push_back(1);
+        report.loads.push_back(loads[pe][i]);
         report.migratable.push_back(1);
         report.size_bytes.push_back(10);
       }
@@ -34,8 +33,7 @@ class Phases {
         for (const Move& one : moves[pe])
           if (one.element == i) to = slot(one.to);
         next[to].keys.push_back(reports[pe].keys[i]);
-        next[to].seconds.push_back(reports[pe].seconds[i]);
-        next[to].measured.push_back(1);
+        next[to].loads.push_back(reports[pe].loads[i]);
         next[to].migratable.push_back(1);
         next[to].size_bytes.push_back(10);
       }
@@ -45,7 +43,7 @@ class Phases {
   void set_load(std::uint64_t element, double seconds) {
     for (PeReport& report : reports)
       for (std::size_t i = 0; i < report.keys.size(); ++i)
-        if (report.keys[i].element == element) report.seconds[i] = seconds;
+        if (report.keys[i].element == element) report.loads[i] = seconds;
   }
   [[nodiscard]] std::size_t pe_of(std::uint64_t element) const {
     for (std::size_t pe = 0; pe < reports.size(); ++pe)
@@ -57,8 +55,8 @@ class Phases {
     PhaseSums all;
     for (const PeReport& report : reports) {
       double seconds = report.background;
-      for (const double one : report.seconds) seconds += one;
-      all = MergeSums()(all, {seconds, seconds, 1, seconds, report.seconds.size(), 0});
+      for (const Load one : report.loads) seconds += one.seconds();
+      all = MergeSums()(all, {seconds, seconds, 1, seconds, report.loads.size(), 0});
     }
     return all;
   }
@@ -112,19 +110,29 @@ TEST_CASE("a round moves nothing while no load is known, and counts unknown ones
   Phases phases({{3, 3, 0, 0}, {}});
   BalanceOptions options;
   options.strategy = "greedy";
-  for (std::uint8_t& one : phases.reports[0].measured) one = 0;
+  phases.reports[0].loads.assign(4, Load::unknown());
   Coordinator blind(options, {});
   CHECK(count(blind.decide(phases.reports)) == 0);
   CHECK(blind.history().at(0).skipped);
   CHECK(blind.history().at(0).n_unknown == 4);
 
-  phases.reports[0].measured = {1, 1, 0, 0};
+  phases.reports[0].loads = {3, 3, Load::unknown(), Load::unknown()};
   Coordinator coordinator(options, {});
   const auto moves = coordinator.decide(phases.reports);
   CHECK(coordinator.history().at(0).before == Approx(2));  // 12 s of work, all on the first
   CHECK(coordinator.history().at(0).predicted == Approx(1));
   for (const Move& one : moves[0]) CHECK(one.element < 2);
   CHECK(count(moves) == 2);
+}
+
+TEST_CASE("the user's strategy sees unknown loads as unknown", "[balance][rounds]") {
+  Phases phases({{3, 0, 0}, {}});
+  phases.reports[0].loads[2] = Load::unknown();
+  Coordinator coordinator({}, [&](const Snapshot& s) {
+    CHECK(s.elements.load == phases.reports[0].loads);
+    return Assignment(3, PeId{s.elements.load[2].seconds() > 0 ? 1 : 0});
+  });
+  CHECK_THROWS_WITH(coordinator.decide(phases.reports), Catch::Contains("an unknown load"));
 }
 
 TEST_CASE("an automatic round waits until a load is known", "[balance][rounds]") {
@@ -165,15 +173,14 @@ TEST_CASE("a round that is undone leaves the imbalance of the placement that com
 TEST_CASE("a prediction leaves out phases in which a load was not known", "[balance][rounds]") {
   Phases phases(std::vector<std::vector<double>>{{5}});
   Predictor predictor(Prediction::moving_average);
-  phases.reports[0].measured = {0};
+  phases.reports[0].loads = {Load::unknown()};
   const Snapshot unknown = snapshot_of(phases.reports, {});
-  CHECK_FALSE(unknown.elements.knows_load(0));
+  CHECK_FALSE(unknown.elements.load[0].is_known());
   predictor.record(unknown);
   CHECK(predictor.n_known() == 0);
-  phases.reports[0].measured = {1};
+  phases.reports[0].loads = {5};
   predictor.record(snapshot_of(phases.reports, {}));
-  CHECK(predictor.predict(unknown).elements.load[0] == Approx(5));
-  CHECK(predictor.predict(unknown).elements.knows_load(0));
+  CHECK(predictor.predict(unknown).elements.load[0].seconds() == Approx(5));
 }
 
 TEST_CASE("automatic waits until what imbalance lost is what a round costs", "[balance][rounds]") {
@@ -296,7 +303,8 @@ TEST_CASE("a report names elements in one snapshot; parcels to strangers are lef
   BalanceOptions options;
   options.speeds = {2, 1};
   const Snapshot s = snapshot_of(phases.reports, options);
-  CHECK(s.elements.load == std::vector<double>{2, 4, 3});  // work at speed 1
+  CHECK(s.elements.load == std::vector<Load>{1, 2, 3});
+  CHECK(s.pes.speed == options.speeds);
   REQUIRE(s.edges.size() == 1);
   CHECK(s.edges[0] == balance::Edge{1, 2, 50, 2});
   CHECK(s.elements.position.empty());  // one PE gave none: a strategy needs all

@@ -45,7 +45,7 @@ BalanceOptions with_speeds(std::vector<double> speeds) {
 balance::Strategy keep(std::vector<double>& loads) {
   return [&loads](const balance::Snapshot& s) {
     loads.clear();
-    for (const double load : s.elements.load) loads.push_back(std::round(load * 1000));
+    for (const auto load : s.elements.load) loads.push_back(std::round(load.seconds() * 1000));
     return s.elements.pe;
   };
 }

@@ -78,6 +78,10 @@ TEST_CASE("an assignment that is none ends the run with an error that says why",
        "array Phased: balance strategy: element 0 to PE 99; choose one of 4"},
       {[](const Snapshot& s) { return Assignment(s.elements.size(), PeId{-1}); },
        "array Phased: balance strategy: element 0 to PE -1; choose one of 4"},
+      {[](const Snapshot& s) {
+         return Assignment(s.elements.size(), PeId{balance::Load::unknown().seconds() > 0 ? 1 : 0});
+       },
+       "array Phased: balance strategy: takes an unknown load for a number"},
       {[](const Snapshot& /*s*/) -> Assignment { throw std::runtime_error("no idea"); }, "no idea"},
       {balance::Strategy(), "the strategy is an empty function"},
   };

@@ -292,6 +292,10 @@ TEST_CASE("an index prints as a user writes it", "[runtime]") {
 TEST_CASE("names are those of the source", "[runtime]") {
   CHECK(tess::plain_name("tess::detail::Call<Block, OfEntry, &Block::step>") == "Block::step");
   CHECK(tess::plain_name("tess::fuzz::Block") == "fuzz::Block");
+  // The user did not write the names of these messages.
+  CHECK(tess::plain_name("tess::detail::Awakening<Block>") == "Block::resume_from_sync");
+  CHECK(tess::plain_name("tess::detail::Construction<mesh::Block<A<int, 2> >, int>") ==
+        "mesh::Block<A<int, 2> >::constructor");
 }
 
 TEST_CASE("reduction operations combine numbers, and lists element by element", "[runtime]") {

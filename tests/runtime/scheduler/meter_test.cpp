@@ -10,6 +10,7 @@
 #include <array>
 #include <chrono>
 #include <thread>
+#include <utility>
 
 namespace {
 
@@ -80,14 +81,17 @@ TEST_CASE("time that was stolen outside of calls is no busy time, and taken back
           "[runtime][meter]") {
   const auto machine = make_threads_machine(1);
   Meter meter(*machine, PeId{0});
-  LoadRecord works;
+  LoadRecord works, is_brief;
   meter.step_begins();
-  const Meter::Scope outer = meter.enter({&works, nullptr});
-  work(3e-3);
-  meter.leave(outer);
+  for (const auto& [record, seconds] : {std::pair(&works, 3e-3), std::pair(&is_brief, 4e-4)}) {
+    const Meter::Scope outer = meter.enter({record, nullptr});
+    work(seconds);
+    meter.leave(outer);
+  }
   std::this_thread::sleep_for(std::chrono::milliseconds(50));  // the runtime is preempted
   meter.step_ends();
   CHECK(meter.seconds(works.ticks) > 2e-3);
+  CHECK(meter.seconds(is_brief.ticks) > 2e-4);
   CHECK(meter.seconds(meter.busy()) > 2e-3);
   CHECK(meter.seconds(meter.busy()) < 30e-3);
 }
