@@ -95,7 +95,7 @@ constexpr std::array known{
              300},
     Scenario{"balance_first_round",
              "a load that a strategy is shown as known is that of a whole phase",
-             &balance_first_round, 30},
+             &balance_first_round, 20},
     Scenario{"balance_periodic", "rounds without a barrier lose no message", &balance_periodic, 3},
     Scenario{"balance_epochs",
              "rounds between epochs, while elements are created on demand and end", &balance_epochs,
