@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <string_view>
 #include <system_error>
+#include <unistd.h>
 
 namespace apps {
 
@@ -40,8 +41,17 @@ void Checkpoints::check(const tess::CommandLine& line, const std::vector<std::st
 
 void Checkpoints::check_folders() {
   if (folder_.empty()) return;
-  std::error_code none;  // a folder that is missing holds nothing
-  if (restarts() && std::filesystem::equivalent(folder_, restart_, none)) return;
+  namespace fs = std::filesystem;
+  std::error_code none;
+  fs::path parent = fs::absolute(folder_, none);  // the first one that is there
+  while (!fs::exists(parent, none) && parent != parent.parent_path()) parent = parent.parent_path();
+  if (!fs::is_directory(parent, none) || access(parent.c_str(), W_OK) != 0)
+    tess::fail(tess::ErrorCode::environment, "--checkpoint ", folder_,
+               ": cannot be written: ", parent.string(),
+               fs::is_directory(parent, none) ? " is read-only" : " is no folder",
+               "; give a folder that can be made");
+  // A folder that is missing holds nothing.
+  if (restarts() && fs::equivalent(folder_, restart_, none)) return;
   if (const std::string latest = tess::latest_checkpoint(folder_); !latest.empty())
     tess::fail(tess::ErrorCode::bad_argument, "--checkpoint ", folder_, ": holds ", latest,
                " of another run: continue that with --restart ", folder_,

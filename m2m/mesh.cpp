@@ -50,6 +50,20 @@ std::string split_text(const TetMesh& mesh) {
   return out;
 }
 
+namespace {
+
+/// How many have an equal; empty if none has.
+template <class T>
+std::string equals_text(std::vector<T> all, const char* what) {
+  std::sort(all.begin(), all.end());
+  std::size_t n = 0;
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if ((i > 0 && all[i] == all[i - 1]) || (i + 1 < all.size() && all[i] == all[i + 1])) ++n;
+  return n == 0 ? std::string() : text(n, " of ", all.size(), what);
+}
+
+}  // namespace
+
 std::size_t n_unused(const TetMesh& mesh) {
   std::vector<char> used(mesh.n_points(), 0);
   for (const Tet& tet : mesh.tets)
@@ -63,15 +77,13 @@ std::string unused_text(std::size_t n_unused, std::size_t n_points) {
 }
 
 std::string coincident_text(const TetMesh& mesh) {
-  std::vector<Point> sorted = mesh.points;
-  std::sort(sorted.begin(), sorted.end());
-  std::size_t n = 0;
-  for (std::size_t i = 0; i < sorted.size(); ++i)
-    if ((i > 0 && sorted[i] == sorted[i - 1]) ||
-        (i + 1 < sorted.size() && sorted[i] == sorted[i + 1]))
-      ++n;
-  if (n == 0) return {};
-  return text(n, " of ", mesh.n_points(), " vertices have the place of another");
+  return equals_text(mesh.points, " vertices have the place of another");
+}
+
+std::string repeated_text(const TetMesh& mesh) {
+  std::vector<Tet> tets = mesh.tets;
+  for (Tet& tet : tets) std::sort(tet.begin(), tet.end());
+  return equals_text(std::move(tets), " tetrahedra have the corners of another");
 }
 
 }  // namespace tess::m2m

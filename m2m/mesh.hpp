@@ -122,6 +122,10 @@ MeshCensus validate(const TetMesh& mesh);
 /// onto itself does not tell them apart.
 [[nodiscard]] std::string coincident_text(const TetMesh& mesh);
 
+/// "162 of 324 tetrahedra have the corners of another"; empty if there are none. Integrals count them
+/// as often as they are there.
+[[nodiscard]] std::string repeated_text(const TetMesh& mesh);
+
 /// The box around all points.
 [[nodiscard]] Aabb bounds(const TetMesh& mesh);
 

@@ -36,12 +36,15 @@ void Problem::complete() {
                  most_steps, " are run: give at most ",
                  most_steps * cfl * spacing(most_level) / fastest);
     n_steps = std::max(1, static_cast<std::int32_t>(n));
-  } else
-    end = n_steps * cfl * spacing(most_level) / fastest;
+    dt = end / n_steps;
+  } else {
+    // Of any number of steps the same bits, for a restart with more of them.
+    dt = cfl * spacing(most_level) / fastest;
+    end = n_steps * dt;
+  }
   if (!std::isfinite(end))
     tess::fail(ErrorCode::bad_argument, "--velocity: ", fastest,
                " takes endless time through a cell: give a larger one, or --time");
-  dt = end / n_steps;
   double mass = 1;
   for (std::int32_t axis = 0; axis < 3; ++axis) mass *= mean(axis, 0, 1, 0);
   if (!(mass < 7.9))  // 64 bits of quanta

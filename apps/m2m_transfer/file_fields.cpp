@@ -335,10 +335,12 @@ TaskOf<FileFieldsReport> move_file_fields(const FileFieldsRequest& request,
   report.source = request.source;
   report.target = request.target;
   const auto elements_of = [](const TetMesh& mesh) -> OtherElements {
-    return {skipped_text(mesh), split_text(mesh), unused_text(n_unused(mesh), mesh.n_points()), {}};
+    return {
+        skipped_text(mesh), split_text(mesh), unused_text(n_unused(mesh), mesh.n_points()), {}, {}};
   };
   report.source_elements = elements_of(run.source);
   report.target_elements = elements_of(run.target);
+  report.source_elements.repeated = repeated_text(run.source);
   if (request.source == request.target)
     report.source_elements.coincident = coincident_text(run.source);
   const SourceFields fields(request, run.source);

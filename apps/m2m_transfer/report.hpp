@@ -23,6 +23,7 @@ struct OtherElements {
   /// "24 of 812 vertices have the place of another": of the source, in a transfer onto itself. Not
   /// counted if no process has the whole mesh.
   std::string coincident{};
+  std::string repeated{};  ///< "162 of 324 tetrahedra have the corners of another", of the source
 };
 
 /// The cost of a transfer besides time.

@@ -70,6 +70,8 @@ class PlyReader {
         if (kind.n > 0) surface_.remarks["skipped " + kind.name.substr(0, 40)] += kind.n;
       }
     }
+    if (encoding_ == Encoding::ascii && text_.find_first_not_of(blanks, at_) != std::string::npos)
+      ++surface_.remarks["skipped text behind the last element"];
     // Now all vertices are known: they may stand behind the faces.
     for (const auto& [begin, n] : polygons_)
       tess::dn::add_polygon(surface_, std::span(corners_).subspan(begin, n));
@@ -290,6 +292,7 @@ class PlyReader {
   }
 
   /// Each vertex of a strip makes a triangle with the two before it, every other one turned round.
+  /// Where a vertex is repeated it makes none: so strips are joined.
   void read_strips(const Property& property) {
     std::array<std::uint32_t, 2> last{};
     std::size_t n_before = 0;
@@ -300,7 +303,7 @@ class PlyReader {
         continue;
       }
       const std::uint32_t corner = corner_of(v);
-      if (n_before >= 2) {
+      if (n_before >= 2 && last[0] != last[1] && corner != last[0] && corner != last[1]) {
         const std::size_t first = n_before % 2;
         polygons_.push_back({corners_.size(), 3});
         corners_.insert(corners_.end(), {last[first], last[1 - first], corner});

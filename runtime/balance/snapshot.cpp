@@ -55,12 +55,16 @@ void validate(const Snapshot& s) {
       fail(ErrorCode::bad_value, "snapshot: PE ", p, " has speed ", s.pes.speed[p],
            " and background ", s.pes.background[p],
            "; speed must be above 0, background not below");
+  double sum = 0;
   for (std::size_t i = 0; i < n; ++i) {
     if (e.pe[i].value < 0 || slot(e.pe[i]) >= n_pes)
       fail(ErrorCode::out_of_range, "snapshot: element ", i, " on ", e.pe[i], " of ", n_pes,
            " PEs");
-    if (const double load = e.load[i].seconds_or(0); !std::isfinite(load))
-      fail(ErrorCode::bad_value, "snapshot: element ", i, " has load ", load, "; give seconds");
+    const double load = e.load[i].seconds_or(0);
+    sum += load;
+    if (!std::isfinite(sum))
+      fail(ErrorCode::bad_value, "snapshot: element ", i, " has load ", load,
+           std::isfinite(load) ? ", and the sum of all is beyond all range" : "", "; give seconds");
     if (e.position.empty()) continue;
     for (const double x : e.position[i])
       if (!std::isfinite(x))

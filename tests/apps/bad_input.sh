@@ -178,6 +178,7 @@ for unused in "--atoms 500" "--cells 2,2,2" "--dt 0.1" --check "--balance greedy
   refuses "$unused does not work with --stability" "$bin/leanmd" --stability $unused
 done
 refuses "--json $scratch/result.json would overwrite --trace" "$bin/stencil" --json "$scratch/result.json" --trace "$scratch/result.json"
+refuses "--checkpoint /dev/null/saved: cannot be written: /dev/null is no folder" "$bin/stencil" --size 8 --steps 2 --checkpoint /dev/null/saved
 for unused in --log-steps "--checkpoint $scratch/saved" "--restart $scratch/saved"; do
   refuses "$unused does not work with --repeat" "$bin/stencil" --repeat 3 $unused
 done

@@ -140,7 +140,7 @@ Replayed replay(const Settings& s) {
   root["communications_left_out"] = n_communications;
   if (n_communications > 0)
     out.table += fmt::format(
-        "left out: {} communications with an entity that is a task in none of the files\n",
+        "left out: {} communications that are not from one task of the files to another\n",
         n_communications);
   out.json = plot::json_text(root, 1);
   return out;

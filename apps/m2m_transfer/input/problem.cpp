@@ -104,12 +104,14 @@ TransferReport report_of(const Problem& problem, const Pair& pair, const Request
     return {survey.skipped,
             survey.split,
             unused_text(survey.census.n_unused, static_cast<std::size_t>(survey.n_points)),
+            {},
             {}};
   };
   report.source_elements = elements_of(source.survey);
   report.target_elements = elements_of(target.survey);
   if (source.name == target.name && source.mesh)
     report.source_elements.coincident = coincident_text(*source.mesh);
+  if (source.mesh) report.source_elements.repeated = repeated_text(*source.mesh);
   report.policy = request.policy;
   report.kind = request.kind;
   report.machine = machine().describe();

@@ -19,7 +19,8 @@ namespace m2m_transfer {
   for (const auto& [title, part] :
        {std::pair("skipped", &OtherElements::skipped), std::pair("split", &OtherElements::split),
         std::pair("unused", &OtherElements::unused),
-        std::pair("coincident", &OtherElements::coincident)})
+        std::pair("coincident", &OtherElements::coincident),
+        std::pair("repeated", &OtherElements::repeated)})
     for (const auto& [side, elements] :
          {std::pair("in the source: ", &source), std::pair("in the target: ", &target)})
       if (!(elements->*part).empty()) out.emplace_back(title, side + elements->*part);
@@ -30,7 +31,8 @@ namespace m2m_transfer {
   return {{"skipped", {{"source", source.skipped}, {"target", target.skipped}}},
           {"split", {{"source", source.split}, {"target", target.split}}},
           {"unused", {{"source", source.unused}, {"target", target.unused}}},
-          {"coincident", source.coincident}};
+          {"coincident", source.coincident},
+          {"repeated", source.repeated}};
 }
 
 [[nodiscard]] inline std::string found_text(const std::array<std::uint64_t, 4>& counts) {

@@ -85,8 +85,9 @@ void check_turn(const Scene& scene, std::size_t number) {
   const double turn = norm(scene.objects[number].frame.angular_velocity) * scene.dt;
   if (scene.rules.spring && scene.rules.impact && turn > most_turn)
     refuse(scene, number, "].motion.spin: turns ", turn, " rad in a step of dt ", scene.dt,
-           ", at most ", most_turn, " with spring and impact together; give a dt of ",
-           scene.dt * most_turn / turn, " or less");
+           ", more than ", most_turn, " with spring and impact together; give a dt of ",
+           // A little less, since six digits are printed.
+           0.9999 * scene.dt * most_turn / turn, " or less");
 }
 
 void check_object(const Scene& scene, std::size_t number) {

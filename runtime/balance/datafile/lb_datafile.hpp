@@ -33,7 +33,7 @@ namespace tess::balance {
 struct Phase {
   std::uint64_t id = 0;
   Snapshot snapshot;
-  std::size_t n_left_out = 0;  ///< communications with an entity that is a task in no file
+  std::size_t n_left_out = 0;  ///< communications that are not from a task of a file to one
 };
 
 /// A file's content, and its name for error messages.

@@ -71,6 +71,7 @@ class Place {
   }
 
   [[nodiscard]] std::string dump() const { return value_.dump(); }
+  [[nodiscard]] const std::string& where() const { return where_; }
 
   [[noreturn]] void damaged(const std::string& what) const {
     fail(ErrorCode::bad_file, where_, ' ', what,
@@ -121,7 +122,10 @@ class Gathering {
     const Place all = phase["communications"];
     for (std::size_t k = 0; k < all.size(); ++k) {
       const Place one = all.at(k);
-      if (one["type"].word() != "SendRecv") continue;
+      if (one["type"].word() != "SendRecv") {  // from or to all of a collection, or of a node
+        ++n_left_out_;
+        continue;
+      }
       const auto from = element(one["from"]), to = element(one["to"]);
       const Edge edge{from.value_or(0), to.value_or(0), one["bytes"].whole_amount(),
                       one["messages"].count()};
@@ -267,6 +271,19 @@ class Gathering {
   std::size_t n_left_out_ = 0;
 };
 
+/// A file may say that phases are as the one before them instead of writing them.
+void refuse_unwritten_phases(const Place& file) {
+  if (!file.has("metadata") || !file["metadata"].has("phases")) return;
+  const Place phases = file["metadata"]["phases"];
+  if (!phases.has("identical_to_previous")) return;
+  const Place equal = phases["identical_to_previous"];
+  for (const char* kind : {"list", "range"})
+    if (equal.has(kind) && equal[kind].size() > 0)
+      fail(ErrorCode::bad_file, file.where(),
+           " metadata phases identical_to_previous: these phases are not written, and cannot be "
+           "replayed; have the file written without it");
+}
+
 json parse(const LbDatafile& file) {
   try {
     return json::parse(file.text);
@@ -287,7 +304,9 @@ std::vector<Phase> parse_lb_datafiles(const std::vector<LbDatafile>& files) {
   std::map<std::uint64_t, Gathering> phases;
   const auto each_phase = [&](auto visit) {
     for (std::size_t f = 0; f < files.size(); ++f) {
-      const Place all = Place(documents[f], files[f].name + ":")["phases"];
+      const Place file(documents[f], files[f].name + ":");
+      refuse_unwritten_phases(file);
+      const Place all = file["phases"];
       for (std::size_t k = 0; k < all.size(); ++k)
         visit(phases[all.at(k)["id"].count()], all.at(k));
     }

@@ -170,6 +170,15 @@ TEST_CASE("what is no triangle of a surface is named, and strips of PLY are read
     CHECK(is_closed(cube));  // each strip turns every other triangle round
     CHECK(remarks_text(cube).empty());
   }
+  // Repeated vertices join two strips, with no surface between them.
+  const Surface joined = read_surface(scratch.write(
+      "joined.ply",
+      "ply\nformat ascii 1.0\nelement vertex 8\nproperty float x\nproperty float y\nproperty "
+      "float z\nelement tristrips 1\nproperty list int int vertex_indices\nend_header\n"
+      "0 0 0\n1 0 0\n0 1 0\n1 1 0\n9 0 0\n8 0 0\n9 1 0\n8 1 0\n"
+      "10 0 1 2 3 3 4 4 5 6 7\n3 0 1 2\n"));
+  CHECK(joined.triangles.size() == 4);
+  CHECK(remarks_text(joined) == "skipped text behind the last element: 1");
 }
 
 TEST_CASE("a polygon that is not convex is cut inside itself, from whichever corner it begins",

@@ -203,6 +203,11 @@ TEST_CASE("validate() names a wrong element, and allows flat and inverted tetrah
   TetMesh seam = mesh;
   seam.points[3] = seam.points[20] = seam.points[9];
   CHECK(coincident_text(seam) == "3 of 28 vertices have the place of another");
+  CHECK(repeated_text(mesh).empty());
+  seam.tets.push_back(seam.tets[5]);
+  std::swap(seam.tets.back()[0], seam.tets.back()[2]);
+  CHECK(repeated_text(seam) ==
+        text("2 of ", seam.n_tets(), " tetrahedra have the corners of another"));
 
   TetMesh bad = mesh;
   bad.points[5][1] = std::numeric_limits<double>::quiet_NaN();

@@ -189,6 +189,19 @@ TEST_CASE("a message whose entity is no task is left out and counted", "[balance
   CHECK(phases.at(0).snapshot.edges.empty());
   CHECK(phases.at(0).n_left_out == 1);
   CHECK(parse_lb_datafiles({{"0", rank_0}, {"1", rank_1}}).at(0).n_left_out == 0);
+  json cast = json::parse(rank_1);
+  cast["phases"][0]["communications"] = json::parse(rank_0)["phases"][0]["communications"];
+  cast["phases"][0]["communications"][0]["type"] = "Broadcast";
+  CHECK(parse_lb_datafiles({{"1", cast.dump()}}).at(0).n_left_out == 1);
+}
+
+TEST_CASE("phases that a file does not write are refused", "[balance][lb_datafile]") {
+  json file = json::parse(rank_0);
+  file["metadata"]["phases"] = {{"count", 3}, {"identical_to_previous", {{"range", {{1, 2}}}}}};
+  CHECK_THAT(complaint(file.dump()),
+             Catch::Contains("identical_to_previous: these phases are not"));
+  file["metadata"]["phases"]["identical_to_previous"]["range"] = json::array();
+  CHECK(complaint(file.dump()).empty());
 }
 
 TEST_CASE("a sequence number names its task by its home, or by being unique",
