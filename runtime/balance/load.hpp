@@ -7,8 +7,6 @@
 //     load.seconds_or(mean)   for a strategy that estimates unknown loads
 #pragma once
 
-#include "runtime/core/error.hpp"
-
 namespace tess::balance {
 
 /// Seconds on a PE of speed 1, or unknown. It is as small as a double.
@@ -19,16 +17,14 @@ class Load {
   /// The load is known. Throws Error if it is below 0, or not a number.
   Load(double seconds) : seconds_(seconds) {  // NOLINT(google-explicit-constructor)
     if (!is_known()) [[unlikely]]
-      fail(ErrorCode::bad_value, "balance: a load of ", seconds,
-           " seconds; give 0 or more, or Load::unknown()");
+      refuse(seconds);
   }
   [[nodiscard]] static Load unknown() { return {}; }
 
   [[nodiscard]] bool is_known() const { return seconds_ >= 0; }
   [[nodiscard]] double seconds() const {
     if (!is_known()) [[unlikely]]
-      fail(ErrorCode::bad_value,
-           "balance strategy: takes an unknown load for a number; ask is_known(), or seconds_or()");
+      refuse_unknown();
     return seconds_;
   }
   [[nodiscard]] double seconds_or(double assumed) const { return is_known() ? seconds_ : assumed; }
@@ -40,6 +36,9 @@ class Load {
   }
 
  private:
+  [[noreturn]] static void refuse(double seconds);
+  [[noreturn]] static void refuse_unknown();
+
   double seconds_ = -1;  // below 0: unknown
 };
 

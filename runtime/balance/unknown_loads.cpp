@@ -1,6 +1,18 @@
 #include "runtime/balance/unknown_loads.hpp"
 
+#include "runtime/core/error.hpp"
+
 namespace tess::balance {
+
+void Load::refuse(double seconds) {
+  fail(ErrorCode::bad_value, "balance: a load of ", seconds,
+       " seconds; give 0 or more, or Load::unknown()");
+}
+
+void Load::refuse_unknown() {
+  fail(ErrorCode::bad_value,
+       "balance strategy: takes an unknown load for a number; ask is_known(), or seconds_or()");
+}
 
 std::size_t n_known_loads(const Snapshot& s) {
   std::size_t n = 0;

@@ -1,5 +1,6 @@
 #include "runtime/balance/load.hpp"
 
+#include "runtime/core/error.hpp"
 #include "tests/support/catch.hpp"
 
 #include <limits>
