@@ -33,10 +33,11 @@ stage() {
   if "$@"; then return 0; fi
   broken+=("$name")
 }
-# needed NAME COMMAND…: likewise, but nothing is left to do after a failure.
+# needed NAME COMMAND…: likewise, but nothing is left to do if it fails.
 needed() {
+  local before=${#broken[@]}
   stage "$@"
-  if ((${#broken[@]} > 0)); then finish; fi
+  if ((${#broken[@]} > before)); then finish; fi
 }
 build() {  # PRESET TARGET…
   local preset=$1

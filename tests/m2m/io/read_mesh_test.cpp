@@ -207,7 +207,7 @@ TEST_CASE("validate() names a wrong element, and allows flat and inverted tetrah
   seam.tets.push_back(seam.tets[5]);
   std::swap(seam.tets.back()[0], seam.tets.back()[2]);
   CHECK(repeated_text(seam) ==
-        text("2 of ", seam.n_tets(), " tetrahedra have the corners of another"));
+        tess::text("2 of ", seam.n_tets(), " tetrahedra have the corners of another"));
 
   TetMesh bad = mesh;
   bad.points[5][1] = std::numeric_limits<double>::quiet_NaN();
