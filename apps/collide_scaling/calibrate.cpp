@@ -112,23 +112,23 @@ std::optional<bool> calibrate(Case& given, int& argc, char**& argv) {
   const Case one = as_measured(given, 1, 1);
   Case half = one, two = as_measured(given, 2, 2);
   half.n_triangles /= 2;
-  double of_two_processes = 0;
-  if (tess::under_mpirun()) {
+  const auto of_two_processes = [&] {
     two.per_process = 1;
     two.steps = 60;  // of one run, without turns
-    auto machine = tess::make_mpi_machine(argc, argv, {.pes_per_process = 1});
-    const bool is_second = machine->process().value != 0;
-    of_two_processes = run_case(two, std::move(machine)).step.seconds;
-    if (is_second) return std::nullopt;
+    return run_case(two, tess::make_mpi_machine(argc, argv, {.pes_per_process = 1})).step.seconds;
+  };
+  if (!tess::speaks_for_job()) {  // it waits there, and leaves the cores alone
+    (void)of_two_processes();
+    return std::nullopt;
   }
   std::vector<Case> cases = scenes_of(one);
   const std::size_t n_scenes = cases.size();
-  cases.insert(cases.end(), {one, half, two});
-  if (of_two_processes != 0) cases.pop_back();
+  cases.insert(cases.end(), {one, half});
+  if (!tess::under_mpirun()) cases.push_back(two);
   std::vector<double> seconds = measured(cases);
-  if (of_two_processes != 0) {
+  if (tess::under_mpirun()) {
+    seconds.push_back(of_two_processes());
     cases.push_back(two);
-    seconds.push_back(of_two_processes);
   }
   std::vector<MeasuredStep> steps;
   for (std::size_t i = 0; i < n_scenes; ++i) steps.push_back(counted(cases[i], seconds[i]));
@@ -143,9 +143,9 @@ std::optional<bool> calibrate(Case& given, int& argc, char**& argv) {
       "| PEs | processes | triangles | predicted, ms per step | measured | ratio |\n"
       "|---|---|---|---|---|---|\n");
   for (std::size_t i = n_scenes; i < cases.size(); ++i) {
-    const double prediction = predicted(cases[i], given.costs), ratio = prediction / seconds[i];
-    are_close = are_close && std::abs(ratio - 1) <= most_off;
     const Case& c = cases[i];
+    const double prediction = predicted(c, given.costs), ratio = prediction / seconds[i];
+    are_close = are_close && std::abs(ratio - 1) <= most_off;
     fmt::print("| {} | {} | {} | {:.2f} | {:.2f} | {:.2f} |\n", c.n_pes, c.n_pes / c.per_process,
                c.n_triangles * (c.is_strong ? 1 : static_cast<std::uint64_t>(c.n_pes)),
                1e3 * prediction, 1e3 * seconds[i], ratio);

@@ -30,7 +30,7 @@ int study(int argc, char** argv) {
   line.option("--study", kind,
               "weak: as many triangles on each PE; strong: one crowd on more and more PEs")
       .one_of({"weak", "strong"});
-  line.option("--pes", pes, "PEs of the machines (1,4,16,64,256,1024,1500; strong 1,4,16,64,256)")
+  line.option("--pes", pes, "PEs of the machines (1,4,16,64,256,1500; strong 1,4,16,64,256)")
       .separated_by(',')
       .between(1, 1 << 20);
   line.option("--triangles", n_triangles, "per PE (65536), or of the crowd (262144)")
@@ -67,7 +67,7 @@ int study(int argc, char** argv) {
   given.steps = steps != 0 ? steps : given.is_strong ? 60 : given.work == Work::model ? 2 : 4;
   given.n_triangles = n_triangles != 0 ? n_triangles : given.is_strong ? 262144 : 65536;
   if (pes.empty() && given.is_strong) pes = {1, 4, 16, 64, 256};
-  if (pes.empty()) pes = {1, 4, 16, 64, 256, 1024, 1500};
+  if (pes.empty()) pes = {1, 4, 16, 64, 256, 1500};
   if (balances.empty() && given.is_strong) balances = {"none", "greedy_refine"};
   if (balances.empty()) balances = {"none"};
   for (const std::string& balance : balances) {
