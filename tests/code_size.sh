@@ -4,7 +4,7 @@
 set -euo pipefail
 cd "$1"
 limits=(
-  m2m_transfer 5000
+  m2m_transfer 5050
   libraries 6700
   tests 16700
   everything 33300
