@@ -2,10 +2,10 @@
 
 #include "collide/parallel/manager.hpp"
 #include "collide/parallel/neighbours.hpp"
-#include "runtime/core/algorithm.hpp"
 #include "runtime/core/check.hpp"
 #include "runtime/core/error.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <exception>
 #include <utility>
@@ -30,7 +30,7 @@ Collider make_collider(const ColliderOptions& options) {
 
 namespace {
 
-constexpr auto is_box = [](const Aabb& box) { return is_valid(box); };
+constexpr auto is_good = [](const Aabb& box) { return is_valid(box); };
 
 }  // namespace
 
@@ -39,7 +39,7 @@ std::size_t Collider::submit(const Objects& objects) const {
   const auto first = static_cast<std::uint64_t>(objects.first);
   // Numbers of more than 32 bits are refused below.
   if (options.invalid_boxes == InvalidBoxes::leave_out && first + boxes.size() <= 1ULL << 32 &&
-      !std::all_of(boxes.begin(), boxes.end(), is_box)) {
+      !std::ranges::all_of(boxes, is_good)) {
     std::vector<Item> items;
     for (std::uint64_t local = first; const Aabb& box : boxes)
       items.push_back({box, {objects.owner, static_cast<LocalId>(local++), objects.model}});
@@ -56,7 +56,7 @@ std::size_t Collider::submit(const std::vector<Item>& items,
                              std::span<const Capsule> capsules) const {
   if (options.invalid_boxes == InvalidBoxes::leave_out &&
       (capsules.empty() || capsules.size() == items.size()) &&
-      !std::all_of(items.begin(), items.end(), [](const Item& i) { return is_valid(i.box); })) {
+      !std::ranges::all_of(items, is_good, &Item::box)) {
     std::vector<Item> rest;
     std::vector<Capsule> of_rest;
     for (std::size_t i = 0; i < items.size(); ++i) {

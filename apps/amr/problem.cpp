@@ -38,7 +38,7 @@ void Problem::complete() {
     n_steps = std::max(1, static_cast<std::int32_t>(n));
     dt = end / n_steps;
   } else {
-    // Of any number of steps the same bits, for a restart with more of them.
+    // The number of steps does not change a bit of it: a restart may go on for more of them.
     dt = cfl * spacing(most_level) / fastest;
     end = n_steps * dt;
   }

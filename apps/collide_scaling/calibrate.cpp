@@ -27,10 +27,9 @@ Case as_measured(const Case& given, std::int32_t n_pes, std::int32_t per_process
   return out;
 }
 
-std::vector<Case> scenes_of(const Case& one) {
+std::vector<Case> scenes_of(const Case& one, double size) {
   std::vector<Case> scenes(5, one);
   scenes[1].two_owners = true;
-  const double size = chosen_voxel_size(one);
   constexpr std::array factors{0.6, 1.4, 2.0};
   const std::array gaps{0.6, 2.0, 10 + 2 * size};  // each plane is 8 high
   for (std::size_t i = 0; i < gaps.size(); ++i)
@@ -81,11 +80,10 @@ double nanoseconds_each(std::size_t n, const Run& run) {
 }
 
 /// Copies the boxes of each voxel, and compares the records of two PEs that have the same voxels.
-void time_alone(const Case& one, SimulatedCosts& costs) {
+void time_alone(const Case& one, double size, SimulatedCosts& costs) {
   ObjectList objects, copies;
   for (const Body& body : one.is_strong ? bodies_of(one, 0, 0) : tile_of(one, 0))
     objects.append(Objects{owner_of(tess::PeId{0}), body.model, body.boxes}, tess::PeId{0});
-  const double size = chosen_voxel_size(one);
   VoxelSort sort;
   sort.run(make_plan(Summary(objects, 0, 0), 1, {.voxel_size = {size, size, size}}, 1), objects);
   const std::vector<VoxelAnswer> all_are_made(sort.records().size(), VoxelAnswer{1, {}});
@@ -121,7 +119,8 @@ std::optional<bool> calibrate(Case& given, int& argc, char**& argv) {
     (void)of_two_processes();
     return std::nullopt;
   }
-  std::vector<Case> cases = scenes_of(one);
+  const double size = chosen_voxel_size(one);
+  std::vector<Case> cases = scenes_of(one, size);
   const std::size_t n_scenes = cases.size();
   cases.insert(cases.end(), {one, half});
   if (!tess::under_mpirun()) cases.push_back(two);
@@ -133,7 +132,7 @@ std::optional<bool> calibrate(Case& given, int& argc, char**& argv) {
   std::vector<MeasuredStep> steps;
   for (std::size_t i = 0; i < n_scenes; ++i) steps.push_back(counted(cases[i], seconds[i]));
   given.costs = fitted_costs(steps);
-  time_alone(one, given.costs);
+  time_alone(one, size, given.costs);
   for (const PartOfStep& part : parts)  // what is printed is what is charged
     given.costs.*part.cost = std::round(100 * (given.costs.*part.cost)) / 100;
 

@@ -335,8 +335,9 @@ TaskOf<FileFieldsReport> move_file_fields(const FileFieldsRequest& request,
   report.source = request.source;
   report.target = request.target;
   const auto elements_of = [](const TetMesh& mesh) -> OtherElements {
-    return {
-        skipped_text(mesh), split_text(mesh), unused_text(n_unused(mesh), mesh.n_points()), {}, {}};
+    return {.skipped = skipped_text(mesh),
+            .split = split_text(mesh),
+            .unused = unused_text(n_unused(mesh), mesh.n_points())};
   };
   report.source_elements = elements_of(run.source);
   report.target_elements = elements_of(run.target);

@@ -23,7 +23,8 @@ struct OtherElements {
   /// "24 of 812 vertices have the place of another": of the source, in a transfer onto itself. Not
   /// counted if no process has the whole mesh.
   std::string coincident{};
-  std::string repeated{};  ///< "162 of 324 tetrahedra have the corners of another", of the source
+  /// "162 of 324 tetrahedra have the corners of another": of the source, counted likewise.
+  std::string repeated{};
 };
 
 /// The cost of a transfer besides time.

@@ -206,8 +206,8 @@ std::size_t n_sampled_per_pe(const Point& size, std::int32_t n_pes) noexcept {
 
 Plan make_plan(const Summary& summary, std::int32_t n_pes, const ColliderOptions& options,
                std::uint64_t step) {
-  Plan plan{step, options.origin, options.voxel_size, 0, true, options.rules, {}, {}};
-  plan.costs = options.simulated_costs;
+  Plan plan{step, options.origin,         options.voxel_size, 0, true, options.rules,
+            {},   options.simulated_costs};
   if (summary.n < 2 ||
       (options.rules.within_model == WithinModel::skip && summary.models.size() == 1))
     return plan;

@@ -7,6 +7,18 @@ namespace tess {
 
 namespace {
 
+/// Where the template argument that begins here ends: at a comma or a bracket that is none of its
+/// own, as in "Block<A<int> >::step>".
+std::size_t end_of_argument(std::string_view text, std::size_t begin = 0) {
+  int depth = 0;
+  for (std::size_t at = begin; at < text.size(); ++at) {
+    const char c = text[at];
+    if (depth == 0 && (c == ',' || c == '>' || c == ')')) return at;
+    depth += c == '<' || c == '(' ? 1 : c == '>' || c == ')' ? -1 : 0;
+  }
+  return text.size();
+}
+
 /// The messages that call what the user did not name as an entry method: "Awakening<Block>" is
 /// shown as Block::resume_from_sync.
 std::string as_member(const std::string& name) {
@@ -16,13 +28,8 @@ std::string as_member(const std::string& name) {
         {"Destruction<", "destroy"},
         {"Relocation<", "migrate_to"}}) {
     if (!name.starts_with(message)) continue;
-    int depth = 0;
-    std::size_t end = message.size();
-    for (; end < name.size() && (depth > 0 || (name[end] != ',' && name[end] != '>')); ++end)
-      depth += name[end] == '<' || name[end] == '('   ? 1
-               : name[end] == '>' || name[end] == ')' ? -1
-                                                      : 0;
-    std::string chare = name.substr(message.size(), end - message.size());
+    const std::size_t begin = message.size();
+    std::string chare = name.substr(begin, end_of_argument(name, begin) - begin);
     while (chare.ends_with(' ')) chare.pop_back();
     return chare.append("::").append(member);
   }
@@ -35,15 +42,7 @@ std::string plain_name(std::string_view compiler_name) {
   // "tess::detail::Call<Block, OfEntry, &Block::step>" is shown as Block::step.
   if (const auto function = compiler_name.rfind('&'); function != std::string_view::npos) {
     compiler_name.remove_prefix(function + 1);
-    // Find the bracket that closes the part before the name: "&Block<A<int> >::step>".
-    int depth = 0;
-    std::size_t end = 0;
-    for (; end < compiler_name.size(); ++end) {
-      const char c = compiler_name[end];
-      depth += c == '<' || c == '(' ? 1 : c == '>' || c == ')' ? -1 : 0;
-      if (depth < 0) break;
-    }
-    compiler_name = compiler_name.substr(0, end);
+    compiler_name = compiler_name.substr(0, end_of_argument(compiler_name));
   }
   std::string name(compiler_name);
   for (const std::string_view noise :

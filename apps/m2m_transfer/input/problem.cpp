@@ -101,11 +101,10 @@ TransferReport report_of(const Problem& problem, const Pair& pair, const Request
   report.source = source.name;
   report.target = target.name;
   const auto elements_of = [](const auto& survey) -> OtherElements {
-    return {survey.skipped,
-            survey.split,
-            unused_text(survey.census.n_unused, static_cast<std::size_t>(survey.n_points)),
-            {},
-            {}};
+    return {
+        .skipped = survey.skipped,
+        .split = survey.split,
+        .unused = unused_text(survey.census.n_unused, static_cast<std::size_t>(survey.n_points))};
   };
   report.source_elements = elements_of(source.survey);
   report.target_elements = elements_of(target.survey);

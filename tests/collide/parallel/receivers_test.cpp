@@ -1,4 +1,4 @@
-// Which owners receive a pair, and what a simulated machine charges for it.
+// The tests show which owners receive a pair, and what a simulated machine charges for it.
 #include "collide/collider.hpp"
 #include "collide/parallel/object_list.hpp"
 #include "runtime/machine/threads.hpp"
@@ -48,7 +48,7 @@ Setup setup_of(std::string option) {
   return take_options(argc, argv.data());
 }
 
-/// What the two clients receive. `time`: of the collision.
+/// Returns what the two clients receive. `time` becomes that of the collision.
 std::vector<std::int64_t> received(const std::string& option, Receivers receivers,
                                    std::array<std::int32_t, 2> n_each,
                                    const SimulatedCosts& costs = {}, Time* time = nullptr) {
