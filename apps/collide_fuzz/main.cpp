@@ -7,7 +7,7 @@
 //
 // A failure prints the seed and the scene; the last line is "N passed, N failed".
 #include "apps/collide_fuzz/trial.hpp"
-#include "apps/seeds.hpp"
+#include "apps/kit/seeds.hpp"
 #include "runtime/command_line.hpp"
 #include "runtime/core/error.hpp"
 
@@ -62,7 +62,7 @@ int fuzz(int argc, char** argv) {
   line.option("--seeds FROM:TO", given_seeds, "of the runs, both included");
   line.option("--only", only, "serial, or chares (default: both)").one_of({"serial", "chares"});
   if (!line.parse(argc, argv, "")) return 0;
-  const apps::Seeds seeds = apps::parse_seeds(given_seeds);
+  const kit::Seeds seeds = kit::parse_seeds(given_seeds);
   for (const int signal : {SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGILL, SIGTERM, SIGINT, SIGHUP})
     std::signal(signal, &on_signal);
   Tally tally;

@@ -1,13 +1,13 @@
 // lb_lab: the effect of the number of chares per PE, of the strategy and its period on run time,
 // and their cost. Runs workloads with a known answer under every given strategy and cut, or
 // strategies on saved snapshots.
+#include "apps/kit/file_names.hpp"
+#include "apps/kit/write_file.hpp"
+#include "apps/kit/wrong_answer.hpp"
 #include "apps/lb_lab/output/replay.hpp"
 #include "apps/lb_lab/output/report.hpp"
 #include "apps/lb_lab/sweep.hpp"
 #include "apps/lb_lab/workload/kernel.hpp"
-#include "apps/plot/file_names.hpp"
-#include "apps/plot/write_file.hpp"
-#include "apps/wrong_answer.hpp"
 #include "runtime/command_line.hpp"
 #include "runtime/runtime.hpp"
 
@@ -25,7 +25,7 @@ tess::Task measure(Settings settings, double steps_a_second) {
   co_await run_all(sweep, steps_a_second);
   print_best(sweep);
   if (!sweep.settings.json.empty()) write_json(sweep.settings.json, sweep);
-  if (!sweep.wrong.empty()) apps::end_with("lb_lab: wrong answer: " + sweep.wrong);
+  if (!sweep.wrong.empty()) kit::end_with("lb_lab: wrong answer: " + sweep.wrong);
 }
 
 void add_options(tess::CommandLine& line, Settings& s) {
@@ -105,24 +105,24 @@ int start(tess::Setup& setup, int argc, char** argv) {
     return 0;
   }
   require_one_purpose(line, !settings.replay.empty());
-  plot::FileNames names;
+  kit::FileNames names;
   for (const std::string& file : replay_files(settings.replay)) names.reads("--replay", file);
   names.writes("--trace", setup.options.trace);
   names.writes("--json", settings.json);
   if (!settings.replay.empty()) {
-    plot::require_writable("--json", settings.json);
+    kit::require_writable("--json", settings.json);
     const Replayed replayed = replay(settings);
     if (!prints) return 0;
     tess::print_text(replayed.table);
-    if (!settings.json.empty()) plot::write_file(settings.json, replayed.json);
+    if (!settings.json.empty()) kit::write_file(settings.json, replayed.json);
     return 0;
   }
   const std::int32_t n_pes = setup.machine->n_pes();
   complete(settings, n_pes);
   // On all processes: all of them have to end where one cannot write.
-  plot::make_folder("--plot", settings.plot);
-  plot::make_folder("--save-snapshot", settings.snapshots);
-  plot::require_writable("--json", settings.json);
+  kit::make_folder("--plot", settings.plot);
+  kit::make_folder("--save-snapshot", settings.snapshots);
+  kit::require_writable("--json", settings.json);
   double steps_a_second = 0;
   if (prints) {
     if (settings.explain) tess::print_text(explain_text(settings, n_pes));

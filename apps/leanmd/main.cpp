@@ -1,10 +1,10 @@
 // leanmd: molecular dynamics on cells and pairs of cells, after the Charm++ miniapp of this name.
+#include "apps/kit/file_names.hpp"
+#include "apps/kit/write_file.hpp"
+#include "apps/kit/wrong_answer.hpp"
 #include "apps/leanmd/report.hpp"
 #include "apps/leanmd/stability.hpp"
 #include "apps/leanmd/study.hpp"
-#include "apps/plot/file_names.hpp"
-#include "apps/plot/write_file.hpp"
-#include "apps/wrong_answer.hpp"
 #include "runtime/command_line.hpp"
 
 #include <cmath>
@@ -31,8 +31,8 @@ tess::Task run_once(Settings s) {
   co_await simulate(s.options, std::move(atoms), outcome);
   s.options.progress->clear();
   tess::print(table(s.options, outcome));
-  if (!s.json.empty() && outcome.error.empty()) plot::write_file(s.json, json(s.options, outcome));
-  if (!outcome.error.empty()) apps::end_with("leanmd: " + outcome.error);
+  if (!s.json.empty() && outcome.error.empty()) kit::write_file(s.json, json(s.options, outcome));
+  if (!outcome.error.empty()) kit::end_with("leanmd: " + outcome.error);
 }
 
 tess::Task run_study(Settings s) {
@@ -40,11 +40,11 @@ tess::Task run_study(Settings s) {
   co_await study(s.options, s.state, rows);
   s.options.progress->clear();
   tess::print(study_table(rows));
-  if (!s.json.empty()) plot::write_file(s.json, study_json(rows));
+  if (!s.json.empty()) kit::write_file(s.json, study_json(rows));
   if (!s.plot.empty()) draw_study(s.plot, rows);
   for (const StudyRow& row : rows)
     if (row.is_wrong) {
-      apps::end_with(fmt::format("leanmd: --dt {}: {}", row.dt, row.error));
+      kit::end_with(fmt::format("leanmd: --dt {}: {}", row.dt, row.error));
       co_return;
     }
 }
@@ -55,7 +55,7 @@ tess::Task run_stability(Settings s) {
   s.options.progress->clear();
   tess::print(stability_table(rows));
   for (const StabilityRow& row : rows)
-    if (!row.ok) apps::end_with("leanmd: " + row.name + " failed");
+    if (!row.ok) kit::end_with("leanmd: " + row.name + " failed");
 }
 
 template <class... Text>
@@ -104,9 +104,9 @@ void check_use(const Settings& s, const std::string& trace) {
   if (s.explain && s.options.checkpoints.restarts())
     refuse("--explain: describes the options, but --restart takes the checkpoint's");
   if (!s.plot.empty() && !s.study) refuse("--plot ", s.plot, ": is for --study");
-  plot::require_writable("--json", s.json);
-  plot::require_picture("--plot", s.plot);
-  plot::FileNames names;
+  kit::require_writable("--json", s.json);
+  kit::require_picture("--plot", s.plot);
+  kit::FileNames names;
   names.writes("--trace", trace);
   names.writes("--json", s.json);
   names.writes_picture("--plot", s.plot);
@@ -156,7 +156,7 @@ int run(tess::Setup& setup, int argc, char** argv) {
                         "--balance", "--check", "--reverse"});
   if (!s.options.checkpoints.restarts()) check_problem(s);  // else it is in the checkpoint
   check_use(s, setup.options.trace);
-  apps::Progress progress(setup.machine->process() == tess::ProcessId{0} ? stderr : nullptr);
+  kit::Progress progress(setup.machine->process() == tess::ProcessId{0} ? stderr : nullptr);
   s.options.progress = &progress;
   return tess::run(setup, [&]() -> tess::Task {
     if (s.stability) return run_stability(s);

@@ -1,8 +1,8 @@
 #include "apps/leanmd/study.hpp"
 
-#include "apps/plot/chart.hpp"
-#include "apps/plot/fit.hpp"
-#include "apps/plot/json.hpp"
+#include "apps/kit/chart.hpp"
+#include "apps/kit/fit.hpp"
+#include "apps/kit/json.hpp"
 #include "runtime/here.hpp"
 
 #include <cmath>
@@ -28,10 +28,10 @@ tess::Task study(Options options, InitialState state, std::vector<StudyRow>& row
 }
 
 std::optional<double> fitted_order(const std::vector<StudyRow>& rows) {
-  std::vector<plot::Point> drifts;
+  std::vector<kit::Point> drifts;
   for (const StudyRow& row : rows)
     if (row.error.empty()) drifts.push_back({row.dt, row.drift});
-  return plot::fitted_power(drifts);
+  return kit::fitted_power(drifts);
 }
 
 std::string study_table(const std::vector<StudyRow>& rows) {
@@ -51,40 +51,40 @@ std::string study_table(const std::vector<StudyRow>& rows) {
 }
 
 std::string study_json(const std::vector<StudyRow>& rows) {
-  plot::Json list = plot::Json::array();
+  kit::Json list = kit::Json::array();
   for (const StudyRow& row : rows) {
-    plot::Json one{{"dt", row.dt},
-                   {"steps", row.n_steps},
-                   {"energy_drift", row.drift},
-                   {"seconds", row.seconds}};
+    kit::Json one{{"dt", row.dt},
+                  {"steps", row.n_steps},
+                  {"energy_drift", row.drift},
+                  {"seconds", row.seconds}};
     if (!row.error.empty()) one["error"] = row.error;
     list.push_back(std::move(one));
   }
-  plot::Json out{{"machine", tess::machine().describe()},
-                 {"fitted_order", nullptr},
-                 {"rows", std::move(list)}};
+  kit::Json out{{"machine", tess::machine().describe()},
+                {"fitted_order", nullptr},
+                {"rows", std::move(list)}};
   if (const std::optional<double> order = fitted_order(rows)) out["fitted_order"] = *order;
-  return plot::json_text(out);
+  return kit::json_text(out);
 }
 
 void draw_study(const std::string& svg, const std::vector<StudyRow>& rows) {
-  plot::Chart chart{.title = "velocity Verlet: error against run time",
-                    .x_label = "seconds",
-                    .y_label = "energy drift per atom",
-                    .x_log = true,
-                    .y_log = true};
-  plot::Series drift{.name = "dt from left to right: shorter"};
+  kit::Chart chart{.title = "velocity Verlet: error against run time",
+                   .x_label = "seconds",
+                   .y_label = "energy drift per atom",
+                   .x_log = true,
+                   .y_log = true};
+  kit::Series drift{.name = "dt from left to right: shorter"};
   for (const StudyRow& row : rows)
     if (row.error.empty()) drift.points.push_back({row.seconds, row.drift});
   chart.series = {std::move(drift)};
   // Twice the steps, a quarter of the error.
-  if (const std::vector<plot::Point>& points = chart.series.front().points; !points.empty()) {
-    const plot::Point first = points.front(), last = points.back();
+  if (const std::vector<kit::Point>& points = chart.series.front().points; !points.empty()) {
+    const kit::Point first = points.front(), last = points.back();
     chart.series.push_back({.name = "order 2",
                             .points = {first, {last.x, first.y * std::pow(first.x / last.x, 2)}},
-                            .style = plot::Style::dashes});
+                            .style = kit::Style::dashes});
   }
-  (void)plot::write_svg(svg, chart);
+  (void)kit::write_svg(svg, chart);
 }
 
 }  // namespace leanmd

@@ -1,9 +1,9 @@
 #include "apps/overset/assembly.hpp"
 
+#include "apps/kit/worst.hpp"
 #include "apps/overset/body.hpp"
 #include "apps/overset/grid.hpp"
 #include "apps/surface_file/read_surface.hpp"
-#include "apps/worst.hpp"
 #include "m2m/read_mesh.hpp"
 #include "runtime/core/error.hpp"
 #include "runtime/core/hash.hpp"
@@ -73,7 +73,7 @@ void keep(const Problem& problem, std::size_t number, const Rows& rows, Assemble
   for (std::size_t v = 0; v < mesh.n_points(); ++v) {
     if (out.iblank[v] >= 0) continue;
     const double error = std::abs(out.values[v] - field(mesh.points[v]));
-    apps::worsen(out.linf, error);
+    kit::worsen(out.linf, error);
     squares += error * error;
   }
   if (out.report.n_fringe > 0)

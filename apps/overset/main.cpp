@@ -1,11 +1,11 @@
 // A mesh around a body overlaps a background mesh: cuts the hole, finds the donors of the fringes,
 // and moves a field between the two.
+#include "apps/kit/file_names.hpp"
+#include "apps/kit/worst.hpp"
+#include "apps/kit/write_file.hpp"
 #include "apps/overset/body.hpp"
 #include "apps/overset/report.hpp"
 #include "apps/overset/wall_study.hpp"
-#include "apps/plot/file_names.hpp"
-#include "apps/plot/write_file.hpp"
-#include "apps/worst.hpp"
 #include "runtime/command_line.hpp"
 #include "runtime/core/number.hpp"
 #include "runtime/runtime.hpp"
@@ -39,7 +39,7 @@ tess::Task run_once(Options options) {
   const Assembly assembly = co_await assemble(problem);
   tess::print(table(options.request, problem, assembly));
   if (!options.json.empty())
-    plot::write_file(options.json, json(options.request, problem, assembly));
+    kit::write_file(options.json, json(options.request, problem, assembly));
   if (!options.plot.empty()) tess::print(write(problem, assembly, options.plot));
 }
 
@@ -59,7 +59,7 @@ tess::Task run_refined(Options options) {
         .n = n, .h = 1.0 / n, .seconds = assembly.cut + assembly.search + assembly.exchange};
     double squares = 0;
     for (const Assembled& mesh : assembly.meshes) {
-      apps::worsen(row.linf, mesh.linf);
+      kit::worsen(row.linf, mesh.linf);
       squares += mesh.rms * mesh.rms * static_cast<double>(mesh.report.n_fringe);
       row.n_fringe += mesh.report.n_fringe;
       row.n_orphans += mesh.report.n_orphans;
@@ -131,7 +131,7 @@ void refuse_contradictions(const Options& options, const std::string& trace) {
       refuse(options.given_for_once.front());
     return;
   }
-  plot::FileNames names;
+  kit::FileNames names;
   names.reads("BACKGROUND", options.request.background);
   names.reads("OVERSET", options.request.overset);
   names.reads("--wall", options.request.wall);
@@ -178,7 +178,7 @@ int run(tess::Setup& setup, int argc, char** argv) {
   const double least = options.problem.options.least_quality;
   if (!(least >= 0 && least <= 1))
     tess::fail(tess::ErrorCode::bad_argument, "--least-quality: ", least, " is not from 0 to 1");
-  plot::require_writable("--json", options.json);
+  kit::require_writable("--json", options.json);
   for (const char* option : {"--field", "--layers", "--least-quality", "--chares"})
     if (line.is_given(option)) options.given_for_once.emplace_back(option);
   if (!options.study.empty())

@@ -1,9 +1,9 @@
 #include "apps/overset/report.hpp"
 
+#include "apps/kit/chart.hpp"
+#include "apps/kit/json.hpp"
+#include "apps/kit/write_file.hpp"
 #include "apps/overset/picture.hpp"
-#include "apps/plot/chart.hpp"
-#include "apps/plot/json.hpp"
-#include "apps/plot/write_file.hpp"
 #include "m2m/write_exodus.hpp"
 
 #include <cmath>
@@ -55,7 +55,7 @@ std::string table(const Request& request, const Problem& problem, const Assembly
 }
 
 std::string json(const Request& request, const Problem& problem, const Assembly& assembly) {
-  plot::Json out{
+  kit::Json out{
       {"background", request.background},
       {"overset", request.overset},
       {"wall",
@@ -71,17 +71,17 @@ std::string json(const Request& request, const Problem& problem, const Assembly&
   for (std::size_t i = 0; i < 2; ++i) {
     const Assembled& mesh = assembly.meshes[i];
     const BlankingReport& r = mesh.report;
-    plot::Json of_mesh{{"name", names[i]},         {"field", r.n_field},
-                       {"hole", r.n_hole},         {"fringe", r.n_fringe},
-                       {"orphans", r.n_orphans},   {"least_quality", r.least_quality},
-                       {"full_quality", r.n_full}, {"linf", mesh.linf},
-                       {"rms", mesh.rms},          {"orphan_list", plot::Json::array()}};
+    kit::Json of_mesh{{"name", names[i]},         {"field", r.n_field},
+                      {"hole", r.n_hole},         {"fringe", r.n_fringe},
+                      {"orphans", r.n_orphans},   {"least_quality", r.least_quality},
+                      {"full_quality", r.n_full}, {"linf", mesh.linf},
+                      {"rms", mesh.rms},          {"orphan_list", kit::Json::array()}};
     for (const Orphan& orphan : r.orphans)
       of_mesh["orphan_list"].push_back(
           {{"point", orphan.point}, {"at", orphan.at}, {"reason", name_of(orphan.reason)}});
     out["meshes"].push_back(std::move(of_mesh));
   }
-  return plot::json_text(out);
+  return kit::json_text(out);
 }
 
 std::string explanation(const Problem& problem) {
@@ -102,7 +102,7 @@ std::string explanation(const Problem& problem) {
 }
 
 std::string write(const Problem& problem, const Assembly& assembly, const std::string& folder) {
-  plot::make_folder("--plot", folder);
+  kit::make_folder("--plot", folder);
   for (std::size_t i = 0; i < 2; ++i) {
     const Assembled& mesh = assembly.meshes[i];
     const std::array<tess::m2m::Field, 3> fields{
@@ -111,19 +111,19 @@ std::string write(const Problem& problem, const Assembly& assembly, const std::s
          {"value", 1, mesh.values}}};
     write_exodus(fmt::format("{}/{}.exo", folder, names[i]), problem.meshes[i], fields);
   }
-  plot::write_file(folder + "/before.svg", picture(problem, assembly, Moment::before));
-  plot::write_file(folder + "/after.svg", picture(problem, assembly, Moment::after));
+  kit::write_file(folder + "/before.svg", picture(problem, assembly, Moment::before));
+  kit::write_file(folder + "/after.svg", picture(problem, assembly, Moment::after));
   return fmt::format("wrote before.svg, after.svg, background.exo and overset.exo to {}\n", folder);
 }
 
 std::string study_table(const std::vector<StudyRow>& rows, const std::string& folder) {
   std::string out = fmt::format("{:>6}{:>10}{:>11}{:>9}{:>9}{:>12}{:>12}{:>8}\n", "n", "h",
                                 "seconds", "fringe", "orphans", "rms", "max error", "order");
-  plot::Chart chart{.title = "error at the fringe",
-                    .x_label = "seconds: cut, search, exchange",
-                    .y_label = "error",
-                    .x_log = true,
-                    .y_log = true};
+  kit::Chart chart{.title = "error at the fringe",
+                   .x_label = "seconds: cut, search, exchange",
+                   .y_label = "error",
+                   .x_log = true,
+                   .y_log = true};
   chart.series = {{"rms"}, {"max"}};
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const StudyRow& r = rows[i];
@@ -136,8 +136,8 @@ std::string study_table(const std::vector<StudyRow>& rows, const std::string& fo
     chart.series[1].points.push_back({r.seconds, r.linf});
   }
   if (folder.empty()) return out;
-  plot::make_folder("--plot", folder);
-  if (plot::write_svg(folder + "/study.svg", chart))
+  kit::make_folder("--plot", folder);
+  if (kit::write_svg(folder + "/study.svg", chart))
     out += fmt::format("wrote study.svg and study.csv to {}\n", folder);
   return out;
 }

@@ -1,10 +1,10 @@
 // particles SCENE.json: moves particles among objects by distance/normal fields, and reports
 // energies, particles that tunnelled, and the time per particle and step.
+#include "apps/kit/write_file.hpp"
 #include "apps/particles/options.hpp"
 #include "apps/particles/output/files.hpp"
 #include "apps/particles/output/report.hpp"
 #include "apps/particles/stability/cases.hpp"
-#include "apps/plot/write_file.hpp"
 #include "runtime/balance/strategy.hpp"
 #include "runtime/command_line.hpp"
 #include "runtime/runtime.hpp"
@@ -22,7 +22,7 @@ struct Problem {
   Report report;
 };
 
-tess::Task simulated(Problem& problem, apps::Progress& progress) {
+tess::Task simulated(Problem& problem, kit::Progress& progress) {
   const auto stage = std::make_shared<Stage>(std::move(problem.scene));
   RunResult result;
   const Options& options = problem.options;
@@ -33,7 +33,7 @@ tess::Task simulated(Problem& problem, apps::Progress& progress) {
   tess::print(table(stage->scene, result, problem.report));
   const auto write_json = [&] {
     if (!options.json.empty())
-      plot::write_file(options.json, json(stage->scene, result, problem.report));
+      kit::write_file(options.json, json(stage->scene, result, problem.report));
   };
   // The results are written first: a failure of the files and of the study must not lose them.
   write_json();
@@ -79,7 +79,7 @@ int drive(tess::Setup& setup, const Options& options) {
   prepare_files(problem.scene, options, setup.options.trace);
   if (options.explain && machine.process().value == 0)
     tess::print(explanation(problem.scene, options));
-  apps::Progress progress(machine.process().value == 0 ? stderr : nullptr);
+  kit::Progress progress(machine.process().value == 0 ? stderr : nullptr);
   return tess::run(setup, [&]() -> tess::Task { return simulated(problem, progress); });
 }
 

@@ -1,7 +1,7 @@
 // The options of the command line. Every room may include this header; it includes none of them.
 #pragma once
 
-#include "apps/progress.hpp"
+#include "apps/kit/progress.hpp"
 #include "runtime/balance_options.hpp"
 
 #include <cstdint>
@@ -16,7 +16,7 @@ struct RunOptions {
   /// Blocks migrate: in rounds after each exchange of particles, or beside the work (see
   /// runtime/balance.hpp). Absent: they stay, and no load is measured.
   std::optional<tess::BalanceOptions> balance{};
-  apps::Progress* progress = nullptr;  ///< shows the phase of the run; may be null
+  kit::Progress* progress = nullptr;  ///< shows the phase of the run; may be null
 };
 
 struct Options {

@@ -6,8 +6,8 @@
 //                                                         the scenarios that can, 1 to 3 PEs each
 //
 // A failure prints the command that repeats it; the last line is "N passed, N failed".
+#include "apps/kit/seeds.hpp"
 #include "apps/protocol_fuzz/scenarios.hpp"
-#include "apps/seeds.hpp"
 #include "runtime/command_line.hpp"
 #include "runtime/machine/mpi.hpp"
 
@@ -82,7 +82,7 @@ int fuzz(int argc, char** argv) {
   for (const Scenario& one : tess::fuzz::scenarios())
     scenarios += fmt::format("  {:<18} {}\n", one.name, one.claim);
   if (!line.parse(argc, argv, scenarios)) return 0;
-  const apps::Seeds seeds = apps::parse_seeds(given_seeds);
+  const kit::Seeds seeds = kit::parse_seeds(given_seeds);
   if (name != "all" && !tess::fuzz::scenario(name).in_jobs && tess::under_mpirun())
     tess::fail(tess::ErrorCode::bad_argument, "--scenario: ", name,
                " needs the memory of one process; without mpirun it runs on a simulated machine");

@@ -4,10 +4,10 @@
 // values from the exact iterate. With --checkpoint the main coroutine pauses the blocks and saves
 // them; with --restart it continues from there. With --repeat it runs again from zero, as often as
 // asked for, and the time is the median.
-#include "apps/checkpoints.hpp"
-#include "apps/median.hpp"
-#include "apps/plot/file_names.hpp"
-#include "apps/plot/write_file.hpp"
+#include "apps/kit/checkpoints.hpp"
+#include "apps/kit/file_names.hpp"
+#include "apps/kit/median.hpp"
+#include "apps/kit/write_file.hpp"
 #include "apps/stencil/grid.hpp"
 #include "runtime/command_line.hpp"
 #include "runtime/monitor.hpp"
@@ -105,7 +105,7 @@ struct Options {
   Grid grid{{64}, 4, 10'000};
   std::optional<std::int32_t> repeat;  ///< runs that count, after one that warms up
   std::string json;
-  apps::Checkpoints checkpoints;
+  kit::Checkpoints checkpoints;
 };
 
 tess::ArrayProxy<Block> make_blocks(const Grid& grid) {
@@ -113,7 +113,7 @@ tess::ArrayProxy<Block> make_blocks(const Grid& grid) {
 }
 
 /// Goes on to the last step. Returns the elapsed seconds.
-tess::TaskOf<double> run(State& state, apps::Checkpoints& checkpoints) {
+tess::TaskOf<double> run(State& state, kit::Checkpoints& checkpoints) {
   const std::int32_t last = state.grid.n_steps;
   const tess::Time begin = tess::now();
   while (state.step < last) {
@@ -145,7 +145,7 @@ tess::Task relax(Options options) {
     seconds = co_await run(state, options.checkpoints);
     times.push_back(seconds);
   }
-  if (!times.empty()) seconds = apps::median(times);
+  if (!times.empty()) seconds = kit::median(times);
   const Outcome outcome = co_await state.blocks.reduce<&Block::compare>();
   const auto per_step = [&](double time) {
     return time * 1e6 / std::max(1, grid.n_steps - first) / grid.n_blocks / grid.n_blocks;
@@ -164,7 +164,7 @@ tess::Task relax(Options options) {
         times.size(), per_step(*least), per_step(*greatest)));
   }
   if (!options.json.empty())
-    plot::write_file(
+    kit::write_file(
         options.json,
         fmt::format("{{\"program\": \"stencil\", \"size\": {}, \"blocks\": {}, \"steps\": {}, "
                     "\"from_iterate\": {:.3e}, \"result_hash\": \"{:016x}\"}}\n",
@@ -195,8 +195,8 @@ int main(int argc, char** argv) {
     if (options.repeat)  // each run starts from zero, and the steps of all would be in one log
       line.refuse_beside("--repeat", {"--checkpoint", "--restart", "--log-steps"});
     options.checkpoints.check(line, {"--blocks", "--size", "--log-steps"});
-    plot::require_writable("--json", options.json);
-    plot::FileNames names;
+    kit::require_writable("--json", options.json);
+    kit::FileNames names;
     names.writes("--trace", setup.options.trace);
     names.writes("--json", options.json);
     // A restart takes what is not given from the checkpoint.

@@ -1,7 +1,7 @@
 #include "apps/collide_scene/output/picture.hpp"
 
 #include "apps/collide_scene/output/view.hpp"
-#include "apps/plot/quoting.hpp"
+#include "apps/kit/quoting.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -130,7 +130,7 @@ std::string picture(const Scene& scene, std::span<const std::uint32_t> n_hits) {
                                           : pixels_svg(view, colours);
   const auto n_hit = std::ranges::count_if(n_hits, [](std::uint32_t hits) { return hits > 0; });
   out += fmt::format("</g>\n<text x=\"12\" y=\"{}\">{}</text>\n", view.height() + 24,
-                     plot::xml_text(scene.description));
+                     kit::xml_text(scene.description));
   out += fmt::format("<text x=\"12\" y=\"{}\">{} of {} objects collide</text>\n",
                      view.height() + 48, n_hit, scene.n_objects());
   if (colours.most() > 0) {

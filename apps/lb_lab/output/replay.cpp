@@ -1,6 +1,6 @@
 #include "apps/lb_lab/output/replay.hpp"
 
-#include "apps/plot/json.hpp"
+#include "apps/kit/json.hpp"
 #include "runtime/balance/datafile/lb_datafile.hpp"
 #include "runtime/balance/fold.hpp"
 #include "runtime/balance/memory.hpp"
@@ -36,8 +36,8 @@ Snapshot prepared(const Settings& s, Snapshot snapshot) {
 }
 
 /// What a strategy makes of a phase.
-plot::Json row(std::uint64_t phase, const Snapshot& snapshot, const std::string& name,
-               std::uint64_t seed) {
+kit::Json row(std::uint64_t phase, const Snapshot& snapshot, const std::string& name,
+              std::uint64_t seed) {
   const tess::balance::Strategy strategy = tess::balance::make_strategy(name, seed);
   const auto began = std::chrono::steady_clock::now();
   const tess::balance::Assignment wanted = strategy(snapshot);
@@ -64,7 +64,7 @@ plot::Json row(std::uint64_t phase, const Snapshot& snapshot, const std::string&
           {"pes_over_limit", n_over}};
 }
 
-std::string line_of(const plot::Json& row) {
+std::string line_of(const kit::Json& row) {
   const auto text = [&](const char* key) { return row.at(key).text(); };
   const auto number = [&](const char* key) { return row.at(key).real(); };
   return fmt::format(
@@ -108,7 +108,7 @@ Replayed replay(const Settings& s) {
       fmt::format("{:>6} {:>6} {:>9} {:<14} {:>8} {:>9} {:>8} {:>12} {:>14} {:>12} {:>14} {:>10}\n",
                   "phase", "PEs", "elements", "strategy", "before", "predicted", "moves", "bytes",
                   "external bytes", "strategy ms", "fullest PE", "over limit");
-  plot::Json root = {{"rows", plot::Json::array()}, {"left_out", plot::Json::array()}};
+  kit::Json root = {{"rows", kit::Json::array()}, {"left_out", kit::Json::array()}};
   std::vector<tess::balance::Phase> phases =
       tess::balance::read_lb_datafiles(replay_files(s.replay));
   std::map<std::pair<std::string, std::string>, std::size_t> left_out;  // phases per name, reason
@@ -119,7 +119,7 @@ Replayed replay(const Settings& s) {
     for (const std::string& name : names) {
       const std::string why = tess::balance::obstacle(name, snapshot);
       if (why.empty()) {
-        plot::Json one = row(phase.id, snapshot, name, s.seed);
+        kit::Json one = row(phase.id, snapshot, name, s.seed);
         out.table += line_of(one);
         root["rows"].push_back(std::move(one));
       } else if (all) {
@@ -142,7 +142,7 @@ Replayed replay(const Settings& s) {
     out.table += fmt::format(
         "left out: {} communications that are not from one task of the files to another\n",
         n_communications);
-  out.json = plot::json_text(root, 1);
+  out.json = kit::json_text(root, 1);
   return out;
 }
 

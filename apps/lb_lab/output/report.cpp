@@ -1,8 +1,8 @@
 #include "apps/lb_lab/output/report.hpp"
 
+#include "apps/kit/json.hpp"
+#include "apps/kit/write_file.hpp"
 #include "apps/lb_lab/run/kind.hpp"
-#include "apps/plot/json.hpp"
-#include "apps/plot/write_file.hpp"
 #include "runtime/balance/strategy.hpp"
 #include "runtime/run.hpp"
 
@@ -28,7 +28,7 @@ double rounded(double value) {
   return std::stod(fmt::format("{:.6g}", value));
 }
 
-plot::Json json_of(const Row& row) {
+kit::Json json_of(const Row& row) {
   return {{"workload", row.workload},
           {"strategy", row.strategy},
           {"per_pe", row.per_pe},
@@ -75,24 +75,24 @@ void print_best(const Sweep& sweep) {
 
 void write_json(const std::string& path, const Sweep& sweep) {
   const Settings& s = sweep.settings;
-  plot::Json root = {
+  kit::Json root = {
       {"machine", sweep.machine}, {"grain", s.grain},           {"period", s.period},
       {"when", s.when},           {"prediction", s.prediction}, {"seed", s.seed},
   };
-  root["rows"] = plot::Json::array();
-  root["ideal_seconds"] = plot::Json::array();
-  root["imbalance_over_iterations"] = plot::Json::array();
+  root["rows"] = kit::Json::array();
+  root["ideal_seconds"] = kit::Json::array();
+  root["imbalance_over_iterations"] = kit::Json::array();
   for (const Row& row : sweep.rows) {
     root["rows"].push_back(json_of(row));
     root["ideal_seconds"].push_back(row.ideal_seconds);
-    plot::Json curve = plot::Json::array();
+    kit::Json curve = kit::Json::array();
     for (const double value : row.imbalance_of_iteration) curve.push_back(rounded(value));
     root["imbalance_over_iterations"].push_back(std::move(curve));
   }
-  root["best"] = plot::Json::array();
+  root["best"] = kit::Json::array();
   for (const std::string& workload : s.workloads)
     root["best"].push_back(json_of(best_of(sweep, workload)));
-  plot::write_file(path, plot::json_text(root, 1));
+  kit::write_file(path, kit::json_text(root, 1));
 }
 
 std::string list_text() {
@@ -166,7 +166,7 @@ void save_snapshots(const Settings& s, const Row& row, const Outcome& outcome) {
   for (std::int32_t pe = 0; pe < row.n_pes; ++pe) {
     const std::string file = (folder / fmt::format("data.{}.{}", pe, s.snapshot_format)).string();
     const std::string text = tess::balance::write_lb_datafile(outcome.phases, tess::PeId{pe});
-    plot::write_file(file, tess::balance::lb_datafile_bytes(file, text));
+    kit::write_file(file, tess::balance::lb_datafile_bytes(file, text));
   }
 }
 

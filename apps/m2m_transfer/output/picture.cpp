@@ -1,6 +1,6 @@
 #include "apps/m2m_transfer/output/picture.hpp"
 
-#include "apps/plot/quoting.hpp"
+#include "apps/kit/quoting.hpp"
 
 #include <algorithm>
 #include <array>
@@ -132,7 +132,7 @@ void draw(std::string& out, const TetMesh& mesh, std::span<const double> values,
                        panel / n_colours + 0.5, colour(level));
   }
   out += fmt::format("<text x=\"{}\" y=\"{}\">{}, {} = {:.4g}</text>\n", left, margin - 10,
-                     plot::xml_text(title), "xyz"[plane.across], plane.at);
+                     kit::xml_text(title), "xyz"[plane.across], plane.at);
   out += fmt::format("<text x=\"{}\" y=\"{}\">{:.4g}</text>\n", left, margin + panel + 36, least);
   out += fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"end\">{:.4g}</text>\n", left + panel,
                      margin + panel + 36, greatest);

@@ -1,9 +1,9 @@
 #include "apps/particles/output/files.hpp"
 
+#include "apps/kit/file_names.hpp"
+#include "apps/kit/write_file.hpp"
 #include "apps/particles/output/picture.hpp"
 #include "apps/particles/study/study.hpp"
-#include "apps/plot/file_names.hpp"
-#include "apps/plot/write_file.hpp"
 #include "collide/dn_field/field_file.hpp"
 
 #include <charconv>
@@ -39,7 +39,7 @@ bool writes_snapshot(const Scene& scene, const std::string& file) {
 
 /// Throws Error if a file that is written would replace one that is read or written.
 void refuse_to_overwrite(const Scene& scene, const Options& options, const std::string& trace) {
-  plot::FileNames names;
+  kit::FileNames names;
   std::vector<fs::path> others{options.scene, options.json, trace};
   names.reads("SCENE", options.scene);
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
@@ -56,7 +56,7 @@ void refuse_to_overwrite(const Scene& scene, const Options& options, const std::
   const fs::path in(options.out);
   // Names in the folder differ from each other: each is compared with those outside only.
   const auto check = [&](const fs::path& file) {
-    plot::FileNames(names).writes(what, (in / file).string());
+    kit::FileNames(names).writes(what, (in / file).string());
   };
   for (std::size_t i = 0; outputs.fields && i < scene.objects.size(); ++i) check(field_file(i));
   if (outputs.slice) check("field.svg");
@@ -71,7 +71,7 @@ void refuse_to_overwrite(const Scene& scene, const Options& options, const std::
   }
   if (!options.study) return;
   for (const std::string& picture : study_pictures())
-    for (const std::string& file : {picture, plot::data_path(picture)}) check(file);
+    for (const std::string& file : {picture, kit::data_path(picture)}) check(file);
 }
 
 /// Writes FOLDER/trajectories.pvd, which lists the snapshots by time, and
@@ -81,11 +81,11 @@ void write_series(const fs::path& folder, const std::vector<Snapshot>& snapshots
       "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\">\n<Collection>\n";
   for (const Snapshot& snapshot : snapshots) {
     const std::string name = snapshot_file(snapshot.step);
-    plot::write_file((folder / "trajectories" / name).string(), vtp(snapshot));
+    kit::write_file((folder / "trajectories" / name).string(), vtp(snapshot));
     series += fmt::format("<DataSet timestep=\"{}\" file=\"trajectories/{}\"/>\n",
                           snapshot.step * dt, name);
   }
-  plot::write_file((folder / "trajectories.pvd").string(), series + "</Collection>\n</VTKFile>\n");
+  kit::write_file((folder / "trajectories.pvd").string(), series + "</Collection>\n</VTKFile>\n");
 }
 
 }  // namespace
@@ -120,12 +120,12 @@ std::string vtp(const Snapshot& snapshot) {
 
 void prepare_files(const Scene& scene, const Options& options, const std::string& trace) {
   refuse_to_overwrite(scene, options, trace);
-  plot::make_folder("--out " + options.out, options.out);
-  plot::require_writable("--json", options.json);
+  kit::make_folder("--out " + options.out, options.out);
+  kit::require_writable("--json", options.json);
   if (options.out.empty()) return;
   const fs::path in(options.out);
   const auto require = [&](const std::string& file) {
-    plot::require_writable("--out " + options.out, (in / file).string());
+    kit::require_writable("--out " + options.out, (in / file).string());
   };
   for (std::size_t i = 0; scene.outputs.fields && i < scene.objects.size(); ++i)
     require(field_file(i));
@@ -133,7 +133,7 @@ void prepare_files(const Scene& scene, const Options& options, const std::string
   if (scene.outputs.trajectories > 0) {
     require("paths.svg");
     require("trajectories.pvd");
-    plot::make_folder("--out " + options.out, in / "trajectories");
+    kit::make_folder("--out " + options.out, in / "trajectories");
     // Snapshots may be very many, but only one whose name is taken can fail in a folder that can be
     // written.
     std::error_code unreadable;
@@ -145,7 +145,7 @@ void prepare_files(const Scene& scene, const Options& options, const std::string
   }
   if (!options.study) return;
   for (const std::string& picture : study_pictures())
-    plot::require_picture("--out " + options.out, (in / picture).string());
+    kit::require_picture("--out " + options.out, (in / picture).string());
 }
 
 void write_files(const std::string& folder, const Stage& stage, const RunResult& result) {
@@ -156,12 +156,11 @@ void write_files(const std::string& folder, const Stage& stage, const RunResult&
     save_field(stage.fields[i].field(), (in / field_file(i)).string());
   if (const auto& slice = outputs.slice) {
     const Field& field = stage.fields[slice->object].field();
-    plot::write_file((in / "field.svg").string(),
-                     slice_svg(field, outputs.axes.front(), slice->at));
+    kit::write_file((in / "field.svg").string(), slice_svg(field, outputs.axes.front(), slice->at));
   }
   if (result.trajectories.empty()) return;
   write_series(in, result.trajectories, stage.scene.dt);
-  plot::write_file((in / "paths.svg").string(), paths_svg(stage.scene, result.trajectories));
+  kit::write_file((in / "paths.svg").string(), paths_svg(stage.scene, result.trajectories));
 }
 
 }  // namespace particles

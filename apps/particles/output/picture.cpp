@@ -1,7 +1,7 @@
 #include "apps/particles/output/picture.hpp"
 
-#include "apps/plot/contour.hpp"
-#include "apps/plot/ticks.hpp"
+#include "apps/kit/contour.hpp"
+#include "apps/kit/ticks.hpp"
 #include "collide/dn_field/compressed.hpp"
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 namespace particles {
 namespace {
 using namespace tess::dn;
-using plot::Point;
+using kit::Point;
 
 // Pixels.
 constexpr double frame_width = 560, left = 64, right = 16, top = 34, bottom = 44;
@@ -57,7 +57,7 @@ class Frame2D {
         "<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{:.1f}\" "
         "fill=\"none\" stroke=\"#000\"/>\n",
         left, top, frame_width, height_);
-    const double step = plot::tick_step(std::max(frame_width, height_) / scale_);
+    const double step = kit::tick_step(std::max(frame_width, height_) / scale_);
     const double base = top + height_;
     // Far from the origin labels differ in their last digits only; long ones are set smaller.
     const double farthest = std::max({std::abs(low_.x), std::abs(low_.x + frame_width / scale_),
@@ -242,7 +242,7 @@ class Layer {
 
 /// The outlines of where the distance is below a level.
 std::vector<std::vector<Point>> below(const Layer& layer, const Frame2D& frame, double level) {
-  auto lines = plot::contours(
+  auto lines = kit::contours(
       layer.n_across(), layer.n_up(), [&](int i, int j) { return layer.distance(i, j); }, level);
   const Grid& grid = layer.field().grid;
   const Point origin = frame.seen(grid.origin);

@@ -1,12 +1,12 @@
 #include "apps/particles/output/report.hpp"
 
-#include "apps/plot/json.hpp"
+#include "apps/kit/json.hpp"
 
 #include <fmt/core.h>
 
 namespace particles {
 namespace {
-using plot::Json;
+using kit::Json;
 
 std::string_view method_of(const Scene& scene) {
   if (scene.objects.empty()) return "none";
@@ -143,7 +143,7 @@ std::string json(const Scene& scene, const RunResult& result, const Report& repo
   Json out = document(scene, result, report);
   out["study"] = Json::array();
   for (const StudyRow& row : report.study) out["study"].push_back(json_of(row));
-  return plot::json_text(out);
+  return kit::json_text(out);
 }
 
 }  // namespace particles

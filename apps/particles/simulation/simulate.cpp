@@ -40,7 +40,7 @@ double block_edge(const Scene& scene) {
 
 /// The display of the run's progress, if there is one.
 struct Shown {
-  apps::Progress* progress = nullptr;
+  kit::Progress* progress = nullptr;
   void phase(const char* name) const {
     if (progress != nullptr) progress->phase(name);
   }

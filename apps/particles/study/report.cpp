@@ -1,5 +1,5 @@
+#include "apps/kit/chart.hpp"
 #include "apps/particles/study/study.hpp"
-#include "apps/plot/chart.hpp"
 
 #include <array>
 #include <filesystem>
@@ -53,11 +53,11 @@ std::string choice(const StudyRow& row) {
 }
 
 void draw(const std::string& folder, const Picture& picture, const std::vector<StudyRow>& rows) {
-  plot::Chart chart{.title = picture.title,
-                    .x_label = picture.x_label,
-                    .y_label = picture.y_label,
-                    .x_log = picture.x_log,
-                    .y_log = true};
+  kit::Chart chart{.title = picture.title,
+                   .x_label = picture.x_label,
+                   .y_label = picture.y_label,
+                   .x_log = picture.x_log,
+                   .y_log = true};
   std::map<std::string, std::size_t> known;
   for (const StudyRow& row : rows) {
     const double x = row.*picture.x, y = row.*picture.y;
@@ -67,7 +67,7 @@ void draw(const std::string& folder, const Picture& picture, const std::vector<S
     chart.series[at->second].points.push_back({x, y});
   }
   if (!chart.series.empty())
-    (void)plot::write_svg((std::filesystem::path(folder) / picture.file).string(), chart);
+    (void)kit::write_svg((std::filesystem::path(folder) / picture.file).string(), chart);
 }
 
 constexpr const char* words = "{:<6} {:>5} {:<9} {:<10} {:<9} {:<30}";

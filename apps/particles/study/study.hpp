@@ -3,8 +3,8 @@
 // own coordinates.
 #pragma once
 
+#include "apps/kit/progress.hpp"
 #include "apps/particles/scene/scene.hpp"
-#include "apps/progress.hpp"
 
 #include <cmath>
 #include <span>
@@ -53,8 +53,8 @@ struct StudyOptions {
   std::vector<int> resolutions{16, 32, 64};
   std::size_t n_samples = 4000;  ///< points at which distance and normal are compared
   std::size_t n_bounces = 400;
-  std::size_t n_timed = 100'000;       ///< particles that are timed
-  apps::Progress* progress = nullptr;  ///< shows the part of the study; may be null
+  std::size_t n_timed = 100'000;      ///< particles that are timed
+  kit::Progress* progress = nullptr;  ///< shows the part of the study; may be null
 };
 
 /// The study of the scene's first object: fields (resolution × construction × look-up, each with

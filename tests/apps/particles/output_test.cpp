@@ -1,7 +1,7 @@
 // The files that a run writes: pictures and snapshots.
+#include "apps/kit/contour.hpp"
 #include "apps/particles/output/files.hpp"
 #include "apps/particles/output/picture.hpp"
-#include "apps/plot/contour.hpp"
 #include "tests/apps/particles/run_scene.hpp"
 #include "tests/support/scratch.hpp"
 
@@ -12,10 +12,10 @@ using namespace particles;
 
 namespace {
 
-double area_of(const std::vector<plot::Point>& line) {  // negative: clockwise
+double area_of(const std::vector<kit::Point>& line) {  // negative: clockwise
   double twice = 0;
   for (std::size_t i = 0; i < line.size(); ++i) {
-    const plot::Point &a = line[i], &b = line[(i + 1) % line.size()];
+    const kit::Point &a = line[i], &b = line[(i + 1) % line.size()];
     twice += a.x * b.y - b.x * a.y;
   }
   return twice / 2;
@@ -48,27 +48,27 @@ TEST_CASE("contours lie where the values say, closed, and around holes the other
           "[particles]") {
   // A ring around (10, 10), between the radii 3 and 6.
   const auto ring = [](int i, int j) { return std::abs(std::hypot(i - 10, j - 10) - 4.5) - 1.5; };
-  const auto lines = plot::contours(21, 21, ring, 0);
+  const auto lines = kit::contours(21, 21, ring, 0);
   REQUIRE(lines.size() == 2);
   double sum = 0;
   for (const auto& line : lines) {
     const double radius = area_of(line) > 0 ? 6 : 3;
-    for (const plot::Point& p : line)
+    for (const kit::Point& p : line)
       CHECK(std::hypot(p.x - 10, p.y - 10) == Approx(radius).margin(0.05));
     sum += area_of(line);
   }
   CHECK(sum == Approx(27 * std::acos(-1.0)).epsilon(0.02));
   // A region that reaches the border follows it.
-  const auto half = plot::contours(
+  const auto half = kit::contours(
       5, 4, [](int i, int) { return i - 2.25; }, 0);
   REQUIRE(half.size() == 1);
   CHECK(area_of(half[0]) == Approx(2.25 * 3));
-  CHECK(plot::contours(
+  CHECK(kit::contours(
             5, 4, [](int, int) { return NAN; }, 0)
             .empty());
   // Two corners of one square touch by neither rule twice: each is a line of its own.
   const auto corners = [](int i, int j) { return (i + j) % 2 == 0 ? -1.0 : 1.0; };
-  CHECK(plot::contours(2, 2, corners, 0).size() == 2);
+  CHECK(kit::contours(2, 2, corners, 0).size() == 2);
 }
 
 TEST_CASE("a cut through a field draws the surface where it is", "[particles]") {
