@@ -3,7 +3,7 @@
 //
 //     mkdir -p build/corpus/surface
 //     build/fuzz/bin/fuzz_surface -max_total_time=600 -dict=tests/fuzz/surface.dict build/corpus/surface
-#include "apps/surface_file/read_surface.hpp"
+#include "collide/read_surface.hpp"
 #include "runtime/core/error.hpp"
 
 #include <cmath>
@@ -32,7 +32,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t n) 
     fail("cannot write " + path);
   std::fclose(file);
   try {
-    const tess::dn::Surface surface = apps::read_surface(path);
+    const tess::dn::Surface surface = tess::dn::read_surface(path);
     if (surface.triangles.empty()) fail("a surface without triangles was taken");
     for (const auto& triangle : surface.triangles)
       for (const std::uint32_t v : triangle)

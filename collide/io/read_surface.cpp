@@ -1,6 +1,6 @@
-#include "apps/surface_file/read_surface.hpp"
+#include "collide/read_surface.hpp"
 
-#include "apps/surface_file/formats.hpp"
+#include "collide/io/formats.hpp"
 #include "runtime/core/error.hpp"
 
 #include <algorithm>
@@ -8,10 +8,8 @@
 #include <cmath>
 #include <filesystem>
 
-namespace apps {
+namespace tess::dn {
 namespace {
-using tess::ErrorCode;
-using tess::dn::Surface;
 
 /// The ending of the name in lower case, with its dot.
 std::string ending_of(std::string_view path) {
@@ -22,16 +20,16 @@ std::string ending_of(std::string_view path) {
 
 void check(const Surface& surface) {
   if (surface.triangles.empty())
-    tess::fail(ErrorCode::bad_mesh, "holds no triangles; give a mesh of at least one face");
+    fail(ErrorCode::bad_mesh, "holds no triangles; give a mesh of at least one face");
   for (std::size_t t = 0; t < surface.triangles.size(); ++t)
     for (const std::uint32_t v : surface.triangles[t]) {
       if (v >= surface.vertices.size())
-        tess::fail(ErrorCode::bad_mesh, "triangle ", t, " has vertex ", v, ", but there are ",
-                   surface.vertices.size());
+        fail(ErrorCode::bad_mesh, "triangle ", t, " has vertex ", v, ", but there are ",
+             surface.vertices.size());
       const auto& p = surface.vertices[v];
       if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
-        tess::fail(ErrorCode::bad_mesh, "vertex ", v, " of triangle ", t, " is (", p.x, ", ", p.y,
-                   ", ", p.z, "), which is not finite; repair the file");
+        fail(ErrorCode::bad_mesh, "vertex ", v, " of triangle ", t, " is (", p.x, ", ", p.y, ", ",
+             p.z, "), which is not finite; repair the file");
     }
 }
 
@@ -44,22 +42,21 @@ bool names_surface(std::string_view path) {
 
 Surface read_surface(const std::string& path) {
   if (!names_surface(path))
-    tess::fail(ErrorCode::bad_file, path,
-               ": is no surface by its name; give a file .obj, .ply or .stl");
+    fail(ErrorCode::bad_file, path, ": is no surface by its name; give a file .obj, .ply or .stl");
   std::error_code unknown;
   if (std::filesystem::is_directory(path, unknown))
-    tess::fail(ErrorCode::bad_file, path, ": is a directory; give a file .obj, .ply or .stl");
+    fail(ErrorCode::bad_file, path, ": is a directory; give a file .obj, .ply or .stl");
   const std::string ending = ending_of(path);
   try {
-    Surface surface = ending == ".obj"   ? tess::dn::read_obj(path)
+    Surface surface = ending == ".obj"   ? read_obj(path)
                       : ending == ".ply" ? read_ply(path)
                                          : read_stl(path);
     check(surface);
     return surface;
   } catch (const tess::Error& error) {
     if (std::string_view(error.what()).starts_with(path)) throw;
-    tess::fail(error.code(), path, ": ", error.what());
+    fail(error.code(), path, ": ", error.what());
   }
 }
 
-}  // namespace apps
+}  // namespace tess::dn

@@ -2,7 +2,7 @@
 // their properties, then the elements one after the other, as text or binary. Of the elements,
 // `vertex` (x, y, z), `face` (a list of vertices) and `tristrips` (likewise; -1 ends a strip) are
 // taken; others are skipped with a remark. What is not used is not read as a number.
-#include "apps/surface_file/formats.hpp"
+#include "collide/io/formats.hpp"
 #include "runtime/base/open_file.hpp"
 #include "runtime/base/words.hpp"
 #include "runtime/core/error.hpp"
@@ -15,10 +15,8 @@
 #include <sstream>
 #include <utility>
 
-namespace apps {
+namespace tess::dn {
 namespace {
-using tess::ErrorCode;
-using tess::dn::Surface;
 
 enum class Type : std::uint8_t { i8, u8, i16, u16, i32, u32, f32, f64 };
 
@@ -52,8 +50,7 @@ enum class Encoding : std::uint8_t { ascii, little, big };
 class PlyReader {
  public:
   explicit PlyReader(const std::string& path)
-      : path_(path),
-        text_(tess::detail::without_byte_order_mark(tess::detail::read_file(path, "a PLY file"))) {
+      : path_(path), text_(detail::without_byte_order_mark(detail::read_file(path, "a PLY file"))) {
     read_header();
   }
 
@@ -74,16 +71,16 @@ class PlyReader {
       ++surface_.remarks["skipped text behind the last element"];
     // Now all vertices are known: they may stand behind the faces.
     for (const auto& [begin, n] : polygons_)
-      tess::dn::add_polygon(surface_, std::span(corners_).subspan(begin, n));
+      add_polygon(surface_, std::span(corners_).subspan(begin, n));
     return std::move(surface_);
   }
 
  private:
   template <class... Parts>
   [[noreturn]] void refuse(const Parts&... parts) const {
-    if (kind_ == nullptr) tess::fail(ErrorCode::bad_file, path_, ": ", parts...);
-    tess::fail(ErrorCode::bad_file, path_, ": ", kind_->name, " ", number_, " of ", kind_->n, ": ",
-               parts...);
+    if (kind_ == nullptr) fail(ErrorCode::bad_file, path_, ": ", parts...);
+    fail(ErrorCode::bad_file, path_, ": ", kind_->name, " ", number_, " of ", kind_->n, ": ",
+         parts...);
   }
 
   std::string header_line() {
@@ -91,7 +88,7 @@ class PlyReader {
     if (end == std::string::npos) refuse("its header has no end_header; is the file truncated?");
     std::string line = text_.substr(at_, end - at_);
     at_ = end + 1;
-    while (!line.empty() && tess::detail::is_blank(line.back())) line.pop_back();
+    while (!line.empty() && detail::is_blank(line.back())) line.pop_back();
     return line;
   }
 
@@ -218,7 +215,7 @@ class PlyReader {
   double next_word() {
     const std::string_view word = take_word();
     double value = 0;
-    if (!tess::detail::to_number(word, value)) refuse("'", word.substr(0, 40), "' is not a number");
+    if (!detail::to_number(word, value)) refuse("'", word.substr(0, 40), "' is not a number");
     return value;
   }
 
@@ -243,7 +240,7 @@ class PlyReader {
     surface_.vertices.reserve(surface_.vertices.size() +
                               std::min<std::uint64_t>(kind.n, text_.size() / 3));
     each(kind, [&] {
-      tess::dn::Vec3 at{};
+      Vec3 at{};
       for (const Property& property : kind.properties) {
         double* const to = property.is_list           ? nullptr
                            : property.name == axes[0] ? &at.x
@@ -329,8 +326,8 @@ class PlyReader {
 
 }  // namespace
 
-tess::dn::Surface read_ply(const std::string& path) {
+Surface read_ply(const std::string& path) {
   return PlyReader(path).read();
 }
 
-}  // namespace apps
+}  // namespace tess::dn

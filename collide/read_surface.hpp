@@ -1,4 +1,4 @@
-// Surfaces of triangles from files, for all programs: OBJ, PLY and STL, by the ending of the name.
+// Surfaces of triangles from files: OBJ, PLY and STL, by the ending of the name.
 // Every face of a file becomes its triangles (tess::dn::add_polygon), degenerate and duplicate ones
 // included, in the order of the file; Surface::remarks names what is skipped. No vertex is merged or
 // moved.
@@ -14,7 +14,7 @@
 #include <string>
 #include <string_view>
 
-namespace apps {
+namespace tess::dn {
 
 /// True if the name ends in .obj, .ply or .stl, in any case.
 [[nodiscard]] bool names_surface(std::string_view path);
@@ -22,6 +22,6 @@ namespace apps {
 /// Throws tess::Error (bad_file, bad_mesh) that names the file and what is wrong: it cannot be
 /// read, has another ending, is truncated or holds no triangles, a vertex is not finite, or a face
 /// has fewer than three vertices or one that does not exist.
-[[nodiscard]] tess::dn::Surface read_surface(const std::string& path);
+[[nodiscard]] Surface read_surface(const std::string& path);
 
-}  // namespace apps
+}  // namespace tess::dn

@@ -5,10 +5,10 @@
 
 #include <string>
 
-namespace apps {
+namespace tess::dn {
 
 /// Throws tess::Error (bad_file) that names the file, the element and the remedy.
-[[nodiscard]] tess::dn::Surface read_ply(const std::string& path);
-[[nodiscard]] tess::dn::Surface read_stl(const std::string& path);
+[[nodiscard]] Surface read_ply(const std::string& path);
+[[nodiscard]] Surface read_stl(const std::string& path);
 
-}  // namespace apps
+}  // namespace tess::dn

@@ -2,7 +2,7 @@
 // 80 bytes, the number of facets, and of each facet its normal, three vertices and two more bytes. As
 // text: a line per word, such as "vertex X Y Z"; files of capital letters, of several solids, and with
 // "end loop" in two words exist.
-#include "apps/surface_file/formats.hpp"
+#include "collide/io/formats.hpp"
 #include "runtime/base/open_file.hpp"
 #include "runtime/base/words.hpp"
 #include "runtime/core/error.hpp"
@@ -13,13 +13,11 @@
 #include <cstring>
 #include <string_view>
 
-namespace apps {
+namespace tess::dn {
 namespace {
-using tess::ErrorCode;
-using tess::detail::take_line;
-using tess::detail::take_word;
-using tess::detail::to_number;
-using tess::dn::Surface;
+using detail::take_line;
+using detail::take_word;
+using detail::to_number;
 
 constexpr std::size_t head = 84, per_facet = 50;
 
@@ -33,8 +31,8 @@ Surface read_binary(const std::string& path, const std::string& bytes, std::uint
   static_assert(std::endian::native == std::endian::little, "as the numbers of the file");
   const std::size_t n_whole = (bytes.size() - head) / per_facet;
   if (announced > n_whole)
-    tess::fail(ErrorCode::bad_file, path, ": announces ", announced, " facets, but has bytes for ",
-               n_whole, "; it is truncated");
+    fail(ErrorCode::bad_file, path, ": announces ", announced, " facets, but has bytes for ",
+         n_whole, "; it is truncated");
   const std::size_t n_facets = announced == 0 ? n_whole : announced;  // some writers leave it 0
   Surface surface;
   for (std::size_t t = 0; t < n_facets; ++t) {
@@ -68,33 +66,33 @@ Surface read_text(const std::string& path, std::string_view text) {
     if (word.empty()) continue;
     if (word == "end") word += take_word(words);  // "end loop"
     if (word == "vertex") {
-      tess::dn::Vec3 at{};
+      Vec3 at{};
       if (!to_number(take_word(words), at.x) || !to_number(take_word(words), at.y) ||
           !to_number(take_word(words), at.z) || !take_word(words).empty())
-        tess::fail(ErrorCode::bad_file, path, ":", number, ": a vertex needs three numbers");
+        fail(ErrorCode::bad_file, path, ":", number, ": a vertex needs three numbers");
       surface.vertices.push_back(at);
     } else if (word == "endloop") {
       const std::size_t n = surface.vertices.size() - 3 * surface.triangles.size();
       if (n != 3)
-        tess::fail(ErrorCode::bad_file, path, ":", number, ": a facet of ", n,
-                   " vertices; STL holds triangles only: divide it, or write OBJ or PLY");
+        fail(ErrorCode::bad_file, path, ":", number, ": a facet of ", n,
+             " vertices; STL holds triangles only: divide it, or write OBJ or PLY");
       add_triangle(surface);
     } else if (std::ranges::find(passed_over, word) == passed_over.end()) {
-      tess::fail(ErrorCode::bad_file, path, ":", number, ": no line of an STL file begins with '",
-                 shown(word), "'; is it binary and truncated?");
+      fail(ErrorCode::bad_file, path, ":", number, ": no line of an STL file begins with '",
+           shown(word), "'; is it binary and truncated?");
     }
     last = word;
   }
   if (last != "endsolid" || surface.vertices.size() != 3 * surface.triangles.size())
-    tess::fail(ErrorCode::bad_file, path,
-               ": ends without endsolid, or a facet without endloop; is it truncated?");
+    fail(ErrorCode::bad_file, path,
+         ": ends without endsolid, or a facet without endloop; is it truncated?");
   return surface;
 }
 
 }  // namespace
 
 Surface read_stl(const std::string& path) {
-  std::string bytes = tess::detail::read_file(path, "an STL file");
+  std::string bytes = detail::read_file(path, "an STL file");
   if (bytes.size() >= head) {
     std::uint32_t n_facets = 0;
     std::memcpy(&n_facets, bytes.data() + head - sizeof(n_facets), sizeof(n_facets));
@@ -105,15 +103,15 @@ Surface read_stl(const std::string& path) {
     if (fits || (bytes.starts_with("solid") && bytes.find('\0') != std::string::npos))
       return read_binary(path, bytes, n_facets);
   }
-  bytes = tess::detail::without_byte_order_mark(bytes);
+  bytes = detail::without_byte_order_mark(bytes);
   for (char& c : bytes)
     if (c >= 'A' && c <= 'Z') c += 'a' - 'A';
   const std::size_t begin = std::min(bytes.find_first_not_of(" \t\r\n"), bytes.size());
   if (bytes.compare(begin, 5, "solid") != 0)
-    tess::fail(ErrorCode::bad_file, path,
-               ": is not an STL file, or is truncated: it neither begins with 'solid' nor has as "
-               "many bytes as its facets need");
+    fail(ErrorCode::bad_file, path,
+         ": is not an STL file, or is truncated: it neither begins with 'solid' nor has as "
+         "many bytes as its facets need");
   return read_text(path, bytes);
 }
 
-}  // namespace apps
+}  // namespace tess::dn

@@ -1,5 +1,5 @@
 // Files of triangles: nothing is lost, merged or moved, and what is damaged is refused by name.
-#include "apps/surface_file/read_surface.hpp"
+#include "collide/read_surface.hpp"
 
 #include "tests/support/catch.hpp"
 #include "tests/support/scratch.hpp"
@@ -8,7 +8,7 @@
 #include <cstring>
 #include <fmt/format.h>
 
-using apps::read_surface;
+using tess::dn::read_surface;
 using tess::dn::Surface;
 using tess::test::message_of;
 
@@ -102,7 +102,7 @@ std::string text_stl(const std::vector<Corners>& of) {
 }  // namespace
 
 TEST_CASE("every format keeps all triangles, also degenerate and duplicate ones, in order",
-          "[apps][surface_file]") {
+          "[collide][surface]") {
   const tess::test::Scratch scratch;
   CHECK(soup(read_surface(scratch.write("a.obj", obj))) == triangles);
   for (const char* format : {"ascii", "binary_little_endian", "binary_big_endian"})
@@ -117,7 +117,7 @@ TEST_CASE("every format keeps all triangles, also degenerate and duplicate ones,
 TEST_CASE(
     "an OBJ file may have tabs, indents, comments, continued lines, line ends of any kind and "
     "a byte order mark",
-    "[apps][surface_file]") {
+    "[collide][surface]") {
   const tess::test::Scratch scratch;
   const std::string plain = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\n";
   const auto expected = soup(read_surface(scratch.write("plain.obj", plain)));
@@ -136,7 +136,7 @@ TEST_CASE(
 }
 
 TEST_CASE("what is no triangle of a surface is named, and strips of PLY are read",
-          "[apps][surface_file]") {
+          "[collide][surface]") {
   const tess::test::Scratch scratch;
   const Surface lines = read_surface(scratch.write(
       "a.obj",
@@ -182,7 +182,7 @@ TEST_CASE("what is no triangle of a surface is named, and strips of PLY are read
 }
 
 TEST_CASE("a polygon that is not convex is cut inside itself, from whichever corner it begins",
-          "[apps][surface_file]") {
+          "[collide][surface]") {
   const tess::test::Scratch scratch;
   using Outline = std::vector<std::array<double, 2>>;
   const auto area_of = [](const Outline& outline) {
@@ -273,7 +273,7 @@ TEST_CASE("a polygon that is not convex is cut inside itself, from whichever cor
 }
 
 TEST_CASE("a polygon that crosses itself stays a fan, and is counted as one that is not flat is",
-          "[apps][surface_file]") {
+          "[collide][surface]") {
   const tess::test::Scratch scratch;
   const auto remarks_of = [&](const std::string& corners, const std::string& face) {
     const Surface surface = read_surface(scratch.write("a.obj", corners + "f " + face + "\n"));
@@ -291,7 +291,7 @@ TEST_CASE("a polygon that crosses itself stays a fan, and is counted as one that
 }
 
 TEST_CASE("a surface without area, or a very small one, is a surface for a collision",
-          "[apps][surface_file]") {
+          "[collide][surface]") {
   const tess::test::Scratch scratch;
   for (const char* last : {"v 2 0 0\n", "v 0 1e-170 0\n"})
     CHECK(soup(read_surface(
@@ -301,7 +301,7 @@ TEST_CASE("a surface without area, or a very small one, is a surface for a colli
 
 TEST_CASE(
     "STL is read in capital letters, of several solids, and with some bytes behind its facets",
-    "[apps][surface_file]") {
+    "[collide][surface]") {
   const tess::test::Scratch scratch;
   std::string text = text_stl(triangles);
   text.replace(text.find("0.5"), 3, ".5");
@@ -315,7 +315,7 @@ TEST_CASE(
 }
 
 TEST_CASE("STL of other writers is read: words apart, binary that begins with solid, a count of 0",
-          "[apps][surface_file]") {
+          "[collide][surface]") {
   const tess::test::Scratch scratch;
   std::string apart = text_stl(triangles);
   for (const std::string word : {"loop", "facet", "solid"})
@@ -344,7 +344,7 @@ TEST_CASE("STL of other writers is read: words apart, binary that begins with so
 }
 
 TEST_CASE("PLY of other writers is read: blanks in the header, longer rows, what is no number",
-          "[apps][surface_file]") {
+          "[collide][surface]") {
   const tess::test::Scratch scratch;
   const std::string head =
       "ply \nformat ascii 1.0\t\nelement vertex 3\nproperty float x\nproperty float y\n"
@@ -367,7 +367,7 @@ TEST_CASE("PLY of other writers is read: blanks in the header, longer rows, what
              Catch::Contains("vertex 1 of 3: '-1.#IND' is not a number"));
 }
 
-TEST_CASE("a byte order mark stands before any text", "[apps][surface_file]") {
+TEST_CASE("a byte order mark stands before any text", "[collide][surface]") {
   const tess::test::Scratch scratch;
   const std::string mark = "\xEF\xBB\xBF";
   CHECK(soup(read_surface(scratch.write("a.obj", mark + obj))) == triangles);
@@ -375,7 +375,7 @@ TEST_CASE("a byte order mark stands before any text", "[apps][surface_file]") {
   CHECK(soup(read_surface(scratch.write("a.stl", mark + text_stl(triangles)))) == triangles);
 }
 
-TEST_CASE("text is read in double precision", "[apps][surface_file]") {
+TEST_CASE("text is read in double precision", "[collide][surface]") {
   const tess::test::Scratch scratch;
   const std::string x = "500000.123456789";
   const Surface of_obj =
@@ -394,7 +394,7 @@ TEST_CASE("text is read in double precision", "[apps][surface_file]") {
   CHECK(of_stl.vertices[0].x == 500000.123456789);
 }
 
-TEST_CASE("a file that is cut anywhere is refused by its name", "[apps][surface_file]") {
+TEST_CASE("a file that is cut anywhere is refused by its name", "[collide][surface]") {
   const tess::test::Scratch scratch;
   for (const char* format : {"ascii", "binary_little_endian"}) {
     const std::string whole = ply(format, "float");
@@ -413,7 +413,7 @@ TEST_CASE("a file that is cut anywhere is refused by its name", "[apps][surface_
     }
 }
 
-TEST_CASE("what is no surface is refused with its name and the reason", "[apps][surface_file]") {
+TEST_CASE("what is no surface is refused with its name and the reason", "[collide][surface]") {
   const tess::test::Scratch scratch;
   const auto refused = [&](const std::string& name, const std::string& bytes) {
     const std::string path = scratch.write(name, bytes);
