@@ -1,7 +1,6 @@
 #include "apps/leanmd/report.hpp"
 
-#include "apps/kit/json.hpp"
-#include "runtime/here.hpp"
+#include "apps/kit/rows.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -77,7 +76,7 @@ std::string table(const Options& options, const Outcome& outcome) {
   return out;
 }
 
-std::string json(const Options& options, const Outcome& outcome) {
+kit::Json json_of(const Options& options, const Outcome& outcome) {
   const Problem& p = options.problem;
   kit::Json rounds = kit::Json::array();
   for (const tess::balance::Round& round : outcome.rounds)
@@ -86,20 +85,18 @@ std::string json(const Options& options, const Outcome& outcome) {
                       {"predicted", round.predicted},
                       {"phase_seconds", round.phase_seconds},
                       {"round_seconds", round.round_seconds}});
-  kit::Json out{{"machine", tess::machine().describe()},
-                {"atoms", outcome.n_atoms},
-                {"cells", p.box.n_cells},
-                {"steps", options.n_steps},
-                {"dt", p.dt},
-                {"cutoff", p.cutoff},
-                {"seconds", outcome.seconds},
-                {"energy", outcome.energy()},
-                {"energy_drift", outcome.drift()},
-                {"wrong_forces", nullptr},
-                {"balance_rounds", std::move(rounds)},
-                {"result_hash", fmt::format("{:016x}", outcome.hash)}};
-  if (outcome.wrong_forces >= 0) out["wrong_forces"] = outcome.wrong_forces;
-  return kit::json_text(out);
+  const std::int64_t wrong = outcome.wrong_forces;
+  return {{"atoms", outcome.n_atoms},
+          {"cells", p.box.n_cells},
+          {"steps", options.n_steps},
+          {"dt", p.dt},
+          {"cutoff", p.cutoff},
+          {"seconds", outcome.seconds},
+          {"energy", outcome.energy()},
+          {"energy_drift", outcome.drift()},
+          {"wrong_forces", wrong >= 0 ? kit::Json(wrong) : kit::Json()},
+          {"balance_rounds", std::move(rounds)},
+          {"result_hash", kit::hex(outcome.hash)}};
 }
 
 }  // namespace leanmd
