@@ -6,15 +6,22 @@
 namespace kit {
 
 void FileNames::reads(std::string what, std::string path) {
-  taken_.emplace_back(std::move(what), std::move(path));
+  take({std::move(what), std::move(path), false});
 }
 
 void FileNames::writes(std::string what, std::string path) {
-  for (const auto& [other, other_path] : taken_)
-    if (is_same_file(path, other_path))
-      tess::fail(tess::ErrorCode::bad_argument, what, " ", path, " would overwrite ", other, " ",
-                 other_path, "; give another file");
-  taken_.emplace_back(std::move(what), std::move(path));
+  take({std::move(what), std::move(path), true});
+}
+
+void FileNames::take(Taken file) {
+  for (const Taken& other : taken_) {
+    if ((!file.is_written && !other.is_written) || !is_same_file(file.path, other.path)) continue;
+    const Taken& written = file.is_written ? file : other;
+    const Taken& lost = file.is_written ? other : file;
+    tess::fail(tess::ErrorCode::bad_argument, written.option, " ", written.path,
+               " would overwrite ", lost.option, " ", lost.path, "; give another file");
+  }
+  taken_.push_back(std::move(file));
 }
 
 void FileNames::writes_picture(const std::string& what, const std::string& svg) {

@@ -279,7 +279,7 @@ refuses --speed "${lab[@]}" --speed 1,1,0.5,0
 refuses "--plot: .*--replay" "${replays[@]}" --replay "$scratch/empty.exo" --plot "$scratch"
 refuses "--json /nowhere/x.json" "${replays[@]}" --replay "$scratch/empty.exo" --json /nowhere/x.json
 refuses "--workload: .*--replay" "${replays[@]}" --replay "$scratch/empty.exo" --workload linear
-refuses "--fold: .*--replay" "${lab[@]}" --fold modulo
+refuses "--fold: needs --replay" "${lab[@]}" --fold modulo
 refuses missing.json "${replays[@]}" --replay "$scratch/missing.json"
 refuses empty.exo "${replays[@]}" --replay "$scratch/empty.exo"
 refuses modulo "${replays[@]}" --replay "$scratch/empty.exo" --fold nonsense
