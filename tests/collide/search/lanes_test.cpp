@@ -1,7 +1,7 @@
 // Vector code and loops give the same bits.
 #include "collide/search/lanes.hpp"
 
-#include "collide/search/grid.hpp"
+#include "collide/search/region_grid.hpp"
 #include "tests/support/catch.hpp"
 
 #include <algorithm>
@@ -56,8 +56,8 @@ void check_compare() {
 }
 
 template <class Real, std::size_t D>
-void check_code(const Grid<Real, D>& grid, const Box<Real, D>& box) {
-  const CellRange<D> cells = grid.cells(box);
+void check_code(const RegionGrid<Real, D>& grid, const Box<Real, D>& box) {
+  const Box<std::int32_t, D> cells = grid.cells(box);
   std::uint32_t two = 0;
   bool has_more = false;
   for (std::size_t k = 0; k < D; ++k) {
@@ -78,7 +78,7 @@ TEST_CASE("a comparison with vectors finds what overlap() finds", "[collide]") {
 
 TEST_CASE("a grid gives the cell of a coordinate, clamped, with vectors and without", "[collide]") {
   constexpr double inf = std::numeric_limits<double>::infinity();
-  const Grid<double, 3> grid({{0, -1, 1e12}, {1, 1, 1e12 + 1}}, {10, 7, 3});
+  const RegionGrid<double, 3> grid({{0, -1, 1e12}, {1, 1, 1e12 + 1}}, {10, 7, 3});
   std::mt19937_64 random(3);
   const std::array values{-inf, -1e300, -1.0, -1e-9,      0.0,   0.1, 0.3,
                           0.7,  1.0,    1e12, 1e12 + 0.5, 1e300, inf};
@@ -88,7 +88,7 @@ TEST_CASE("a grid gives the cell of a coordinate, clamped, with vectors and with
       box.lo[k] = values[random() % values.size()];
       box.hi[k] = std::max(box.lo[k], values[random() % values.size()]);
     }
-    const CellRange<3> cells = grid.cells(box);
+    const Box<std::int32_t, 3> cells = grid.cells(box);
     for (std::size_t k = 0; k < 3; ++k) {
       REQUIRE(cells.lo[k] == grid.cell(box.lo[k], k));
       REQUIRE(cells.hi[k] == grid.cell(box.hi[k], k));
@@ -97,7 +97,7 @@ TEST_CASE("a grid gives the cell of a coordinate, clamped, with vectors and with
       REQUIRE(cells.hi[k] < grid.n_cells()[k]);
     }
     check_code(grid, box);
-    const Grid<float, 2> flat({{0, -1}, {1, 1}}, {10, 7});
+    const RegionGrid<float, 2> flat({{0, -1}, {1, 1}}, {10, 7});
     check_code(flat, {{static_cast<float>(box.lo[0]), static_cast<float>(box.lo[1])},
                       {static_cast<float>(box.hi[0]), static_cast<float>(box.hi[1])}});
   }

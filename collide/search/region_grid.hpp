@@ -24,17 +24,12 @@ namespace tess::collide::search {
 template <std::size_t D>
 using CellAt = std::array<std::int32_t, D>;
 
-/// The cells from lo to hi, inclusive.
-template <std::size_t D>
-struct CellRange {
-  CellAt<D> lo, hi;
-};
-
 template <class Real, std::size_t D>
-class Grid {
+class RegionGrid {
  public:
   /// n_cells: at least 1 per axis, at most 2^20. An axis without an extent has one cell.
-  Grid(const Box<Real, D>& region, const CellAt<D>& n_cells) : lo_(region.lo), n_cells_(n_cells) {
+  RegionGrid(const Box<Real, D>& region, const CellAt<D>& n_cells)
+      : lo_(region.lo), n_cells_(n_cells) {
     for (std::size_t k = 0; k < D; ++k) {
       per_length_[k] = static_cast<Real>(n_cells[k]) / (region.hi[k] - region.lo[k]);
       if (!std::isfinite(per_length_[k]) || !(per_length_[k] > 0)) {
@@ -57,9 +52,9 @@ class Grid {
     const Real above = at > 0 ? at : Real{0};  // also for NaN, if x - lo_ overflows
     return static_cast<std::int32_t>(above < last_[k] ? above : last_[k]);
   }
-  /// The cells of both corners.
-  [[nodiscard]] CellRange<D> cells(const Box<Real, D>& box) const noexcept {
-    CellRange<D> out;
+  /// The cells that a box touches.
+  [[nodiscard]] Box<std::int32_t, D> cells(const Box<Real, D>& box) const noexcept {
+    Box<std::int32_t, D> out;
     for (std::size_t k = 0; k < D; ++k) {
       out.lo[k] = cell(box.lo[k], k);
       out.hi[k] = cell(box.hi[k], k);
@@ -89,7 +84,7 @@ class Grid {
       if (simd::less<false>(corner, one, more) != 0) return large;
       return static_cast<std::uint32_t>(sum[0]) << D | simd::less<true>(corner, one, more);
     }
-    const CellRange<D> range = cells(box);
+    const Box<std::int32_t, D> range = cells(box);
     std::uint32_t two = 0, longest = 0;
     for (std::size_t k = 0; k < D; ++k) {
       const auto more = static_cast<std::uint32_t>(range.hi[k] - range.lo[k]);
