@@ -12,12 +12,11 @@
 
 #include "collide/box.hpp"
 #include "runtime/core/algorithm.hpp"
+#include "runtime/core/simd.hpp"
 
 #include <cmath>
 #include <cstdint>
-#ifdef __AVX512VL__
-#include <immintrin.h>
-#endif
+#include <utility>
 
 namespace tess::collide::search {
 
@@ -25,17 +24,12 @@ namespace tess::collide::search {
 template <std::size_t D>
 using CellAt = std::array<std::int32_t, D>;
 
-/// The cells from lo to hi, inclusive.
-template <std::size_t D>
-struct CellRange {
-  CellAt<D> lo, hi;
-};
-
 template <class Real, std::size_t D>
-class Grid {
+class RegionGrid {
  public:
   /// n_cells: at least 1 per axis, at most 2^20. An axis without an extent has one cell.
-  Grid(const Box<Real, D>& region, const CellAt<D>& n_cells) : lo_(region.lo), n_cells_(n_cells) {
+  RegionGrid(const Box<Real, D>& region, const CellAt<D>& n_cells)
+      : lo_(region.lo), n_cells_(n_cells) {
     for (std::size_t k = 0; k < D; ++k) {
       per_length_[k] = static_cast<Real>(n_cells[k]) / (region.hi[k] - region.lo[k]);
       if (!std::isfinite(per_length_[k]) || !(per_length_[k] > 0)) {
@@ -58,9 +52,9 @@ class Grid {
     const Real above = at > 0 ? at : Real{0};  // also for NaN, if x - lo_ overflows
     return static_cast<std::int32_t>(above < last_[k] ? above : last_[k]);
   }
-  /// The cells of both corners.
-  [[nodiscard]] CellRange<D> cells(const Box<Real, D>& box) const noexcept {
-    CellRange<D> out;
+  /// The cells that a box touches.
+  [[nodiscard]] Box<std::int32_t, D> cells(const Box<Real, D>& box) const noexcept {
+    Box<std::int32_t, D> out;
     for (std::size_t k = 0; k < D; ++k) {
       out.lo[k] = cell(box.lo[k], k);
       out.hi[k] = cell(box.hi[k], k);
@@ -71,36 +65,26 @@ class Grid {
   /// has two of them; `large` if an axis has more. Grids have fewer than 2^28 cells.
   static constexpr std::uint32_t large = ~std::uint32_t{0};
   [[nodiscard]] std::uint32_t code(const Box<Real, D>& box) const noexcept {
-#ifdef __AVX512VL__
-    // With vectors; the same operations.
-    constexpr __mmask8 corner = (1U << D) - 1, both = (1U << 2 * D) - 1;
-    const Real* const x = box.lo.data();
-    __m256i lo;
-    if constexpr (sizeof(Real) == sizeof(float)) {
-      __m256 at = _mm256_sub_ps(_mm256_maskz_loadu_ps(both, x), _mm256_load_ps(lanes_lo_));
-      at = _mm256_mul_ps(at, _mm256_load_ps(lanes_per_length_));
-      // max and min give their second operand if one is NaN.
-      at = _mm256_min_ps(_mm256_max_ps(at, _mm256_setzero_ps()), _mm256_load_ps(lanes_last_));
-      lo = _mm256_cvttps_epi32(at);
-    } else {
-      __m512d at = _mm512_sub_pd(_mm512_maskz_loadu_pd(both, x), _mm512_load_pd(lanes_lo_));
-      at = _mm512_mul_pd(at, _mm512_load_pd(lanes_per_length_));
-      at = _mm512_maskz_max_pd(0xFF, at, _mm512_setzero_pd());
-      at = _mm512_maskz_min_pd(0xFF, at, _mm512_load_pd(lanes_last_));
-      lo = _mm512_maskz_cvttpd_epi32(0xFF, at);
+    using Reals = simd::Vector<Real, 8>;
+    if constexpr (sizeof(Reals) <= simd::widest) {
+      // With vectors; the same operations.
+      using Ints = simd::Vector<std::int32_t, 8>;
+      constexpr simd::Bits corner = (1U << D) - 1;
+      const Reals at =
+          (simd::load_first<Reals, 2 * D>(box.lo.data()) - simd::load<Reals>(lanes_lo_)) *
+          simd::load<Reals>(lanes_per_length_);
+      const Reals clamped = simd::min(simd::max(at, Reals{}), simd::load<Reals>(lanes_last_));
+      const Ints lo = __builtin_convertvector(clamped, Ints);
+      const Ints hi = upper_ends(lo, std::make_index_sequence<8>());
+      const Ints more = hi - lo, one = simd::all<Ints>(1),
+                 parts = lo * simd::load<Ints>(lanes_strides_);
+      auto sum = __builtin_shufflevector(parts, parts, 0, 1, 2, 3);  // beyond the corner they are 0
+      sum += __builtin_shufflevector(sum, sum, 2, 3, 0, 1);
+      sum += __builtin_shufflevector(sum, sum, 1, 0, 3, 2);
+      if (simd::less<false>(corner, one, more) != 0) return large;
+      return static_cast<std::uint32_t>(sum[0]) << D | simd::less<true>(corner, one, more);
     }
-    const __m256i hi = _mm256_maskz_alignr_epi32(0xFF, lo, lo, D);
-    const __m256i more = _mm256_sub_epi32(hi, lo), one = _mm256_set1_epi32(1);
-    const __m256i strides = _mm256_load_si256(reinterpret_cast<const __m256i*>(lanes_strides_));
-    const __m256i parts = _mm256_mullo_epi32(lo, strides);  // beyond the corner they are 0
-    __m128i sum = _mm256_castsi256_si128(parts);
-    sum = _mm_add_epi32(sum, _mm_srli_si128(sum, 8));
-    sum = _mm_add_epi32(sum, _mm_srli_si128(sum, 4));
-    if (_mm256_mask_cmpgt_epi32_mask(corner, more, one) != 0) return large;
-    return static_cast<std::uint32_t>(_mm_cvtsi128_si32(sum)) << D |
-           _mm256_mask_cmpeq_epi32_mask(corner, more, one);
-#else
-    const CellRange<D> range = cells(box);
+    const Box<std::int32_t, D> range = cells(box);
     std::uint32_t two = 0, longest = 0;
     for (std::size_t k = 0; k < D; ++k) {
       const auto more = static_cast<std::uint32_t>(range.hi[k] - range.lo[k]);
@@ -108,7 +92,6 @@ class Grid {
       longest |= more;
     }
     return longest < 2 ? number(range.lo) << D | two : large;
-#endif
   }
 
   [[nodiscard]] const CellAt<D>& n_cells() const noexcept { return n_cells_; }
@@ -155,6 +138,10 @@ class Grid {
   }
 
  private:
+  template <class V, std::size_t... k>
+  static V upper_ends(V x, std::index_sequence<k...>) noexcept {
+    return __builtin_shufflevector(x, x, ((k + D) % 8)...);
+  }
   std::array<Real, D> lo_, per_length_, last_;
   // The same for both corners of a box.
   alignas(64) Real lanes_lo_[8]{}, lanes_per_length_[8]{}, lanes_last_[8]{};
