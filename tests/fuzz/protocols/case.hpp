@@ -84,9 +84,17 @@ void Case::run_clean(Main main) const {
 
 // What several scenarios draw.
 
+/// A number of 0 … n − 1.
+[[nodiscard]] inline int draw(Random& random, int n) {
+  return static_cast<int>(random.below(static_cast<std::uint64_t>(n)));
+}
+[[nodiscard]] inline const std::string& any_of(const std::vector<std::string>& names,
+                                               Random& random) {
+  return names[random.below(names.size())];
+}
 /// Any PE of the run.
 [[nodiscard]] inline PeId any_pe(Random& random) {
-  return PeId{static_cast<std::int32_t>(random.below(static_cast<std::uint64_t>(tess::n_pes())))};
+  return PeId{draw(random, tess::n_pes())};
 }
 /// A map of indices to PEs that seems random.
 struct ByLot {

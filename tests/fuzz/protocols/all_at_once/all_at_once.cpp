@@ -13,10 +13,9 @@
 #include "tests/fuzz/protocols/all_at_once/caller.hpp"
 #include "tests/fuzz/protocols/all_at_once/collections.hpp"
 #include "tests/fuzz/protocols/scenarios.hpp"
+#include "tests/support/scratch.hpp"
 
 #include <algorithm>
-#include <cstdlib>
-#include <filesystem>
 
 namespace tess::fuzz::all_kinds {
 
@@ -30,8 +29,7 @@ struct State {
   std::vector<Index1> listed;
   SectionProxy<SectionMember> section;
   Count sent, spent;  // spent: what the process groups of earlier phases held
-  template <class Ar>
-  void serialize(Ar& ar) {
+  void serialize(auto& ar) {
     ar(phase, n_indices, n_elements, n_reductions, callers, elements, on_demand, single, per_pe,
        listed, section, sent, spent);
   }
@@ -146,20 +144,6 @@ Task run_restarted(int last, std::string folder) {
   co_await run_phases(state, last, -1, folder);
 }
 
-class Folder {
- public:
-  Folder() : path_((std::filesystem::temp_directory_path() / "tess-fuzz-XXXXXX").string()) {
-    if (::mkdtemp(path_.data()) == nullptr) fail(ErrorCode::environment, "no folder like ", path_);
-  }
-  ~Folder() { std::filesystem::remove_all(path_); }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  [[nodiscard]] std::string path() const { return path_ + "/saved"; }
-
- private:
-  std::string path_;
-};
-
 /// What is dropped with a section is counted and reported; nothing else is.
 void run(Case& test, const std::function<Task()>& main) {
   const Result result = test.run(main);
@@ -188,12 +172,13 @@ void all_at_once(Case& test) {
     const int n_phases = test.draw(1, 2);
     all_kinds::run(test, [&] { return run_first(n_elements, n_phases, -1, ""); });
   } else {
-    const Folder folder;
+    const test::Scratch folder;
     const int n_phases = test.draw(1, 2), n_more = test.draw(1, 2);
     const int save_from = test.draw(1, n_phases);
-    all_kinds::run(test, [&] { return run_first(n_elements, n_phases, save_from, folder.path()); });
+    all_kinds::run(
+        test, [&] { return run_first(n_elements, n_phases, save_from, folder.path("saved")); });
     test.machine.pes = test.draw(1, 8);
-    all_kinds::run(test, [&] { return run_restarted(n_phases + n_more, folder.path()); });
+    all_kinds::run(test, [&] { return run_restarted(n_phases + n_more, folder.path("saved")); });
   }
   expect(here.n_ticks == here.n_ticks_sent, here.n_ticks.load(), " of ", here.n_ticks_sent.load(),
          " messages of periodic timers have arrived");

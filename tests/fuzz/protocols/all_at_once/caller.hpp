@@ -153,10 +153,7 @@ class Caller : public Chare<Caller, Index1>, public Addable {
 
   using EntryAttributes = Attributes<EntryMethod<&Caller::add_soon, Priority{-5}>,
                                      EntryMethod<&Caller::add_inline, inline_when_local>>;
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(count_, notes_, phase_);
-  }
+  void serialize(auto& ar) { ar(count_, notes_, phase_); }
 
  private:
   [[nodiscard]] ElementProxy<Caller> any(Random& random) const {

@@ -52,9 +52,6 @@ inline std::uint64_t token(Random& random, int n_copies = 1) {
   for (int i = 0; i < n_copies; ++i) record->sent.note(drawn);
   return drawn;
 }
-inline int draw(Random& random, int n) {
-  return static_cast<int>(random.below(static_cast<std::uint64_t>(n)));
-}
 inline Time delay(Random& random) {
   return Time(static_cast<std::int64_t>(random.below(record->longest)));
 }
@@ -65,10 +62,7 @@ class Counting {
  public:
   void add(std::uint64_t token) { count_.note(token); }
   [[nodiscard]] Count count() const { return count_; }
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(count_);
-  }
+  void serialize(auto& ar) { ar(count_); }
 
  protected:
   Count count_;
@@ -159,10 +153,7 @@ class SectionMember : public Chare<SectionMember, Index1>, public Addable {
   void count(Callback<double> target) { contribute(HalfOfAll{}, 1, target); }
   void report(Callback<Count> target) { contribute(sum, counted_.count(), target); }
 
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(counted_, results_, n_given_, n_called_, ends_);
-  }
+  void serialize(auto& ar) { ar(counted_, results_, n_given_, n_called_, ends_); }
 
  private:
   std::map<SectionProxy<SectionMember>, std::vector<Callback<SectionResult>>> results_;

@@ -48,10 +48,7 @@ class Listener : public Chare<Listener, Index1> {
   /// The last of all broadcasts.
   void tell() { heard->add(index().x, met_); }
 
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(created_, met_);
-  }
+  void serialize(auto& ar) { ar(created_, met_); }
 
  private:
   void move(Random& random) {

@@ -67,10 +67,7 @@ struct DrivenCall {
 class DrivenCell : public Chare<DrivenCell, Index1> {
  public:
   void give(const DrivenCall& call);
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(n_given_);
-  }
+  void serialize(auto& ar) { ar(n_given_); }
 
  private:
   int n_given_ = 0;

@@ -66,8 +66,7 @@ class OwnElement : public Chare<OwnElement, Index1>, public Contributor {
     contribute(section, gather, question, std::move(target));
     move(question);
   }
-  template <class Ar>
-  void serialize(Ar& /*ar*/) {}
+  void serialize(auto& /*ar*/) {}
 
  private:
   void move(std::uint64_t question) {
@@ -95,10 +94,7 @@ class Asker : public Chare<Asker, Index1> {
   Task work(AskerWork work);
   void report(Callback<int> target) { contribute(sum, n_done_, std::move(target)); }
 
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(own_, alive_, n_inserted_, n_done_);
-  }
+  void serialize(auto& ar) { ar(own_, alive_, n_inserted_, n_done_); }
 
  private:
   Task ask_all(AskerWork work, Random& random);

@@ -69,10 +69,7 @@ class RoundElement : public Chare<RoundElement, Index1> {
   void create(Creation creation);
   void give(int round);
 
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(created_, last_round_);
-  }
+  void serialize(auto& ar) { ar(created_, last_round_); }
 
  private:
   void create_child(int round);

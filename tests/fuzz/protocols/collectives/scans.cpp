@@ -104,10 +104,7 @@ class Scanner : public Chare<Scanner, Index1> {
   }
   void placed(List result) { note(std::move(result)); }
 
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(n_given_, firsts_);
-  }
+  void serialize(auto& ar) { ar(n_given_, firsts_); }
 
  private:
   std::int32_t n_given_ = 0;

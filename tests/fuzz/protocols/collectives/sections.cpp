@@ -88,10 +88,7 @@ class SectionMember : public Chare<SectionMember, Index1> {
     end(random);
   }
 
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(next_, given_, n_late_, n_begun_);
-  }
+  void serialize(auto& ar) { ar(next_, given_, n_late_, n_begun_); }
 
  private:
   [[nodiscard]] Random draws(const Call& call, int what) const {

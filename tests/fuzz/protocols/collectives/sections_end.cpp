@@ -53,10 +53,7 @@ class EndingMember : public Chare<EndingMember, Index1> {
       multicast.section.destroy();
     if (random.chance(section_end_record->move_chance)) migrate_to(any_pe(random));
   }
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(next_);
-  }
+  void serialize(auto& ar) { ar(next_); }
 
  private:
   std::map<int, int> next_;  // by turn

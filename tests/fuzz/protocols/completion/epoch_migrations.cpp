@@ -42,8 +42,7 @@ class Mover : public Chare<Mover, Index1> {
 
   void end() { destroy(); }
 
-  template <class Ar>
-  void serialize(Ar& /*ar*/) {}
+  void serialize(auto& /*ar*/) {}
 };
 
 void check_places() {

@@ -60,7 +60,7 @@ class TreeElement : public Chare<TreeElement, Index1> {
     array()[{(index().x + 1) % epoch_record->n_elements}].send<&TreeElement::write>(
         EpochNote{key, node.epoch}, index().x);
     Random random(mix(node.seed));
-    for (int n_notes = 1 + static_cast<int>(random.below(2)); n_notes > 1; --n_notes) {
+    for (int n_notes = 1 + draw(random, 2); n_notes > 1; --n_notes) {
       epoch_record->add(node.epoch, 1);
       array()[{0}].send<&TreeElement::write>(EpochNote{key, node.epoch}, index().x);
       co_await notes_.take(key);
@@ -100,10 +100,7 @@ class TreeElement : public Chare<TreeElement, Index1> {
     done(static_cast<int>(epochs / n));
   }
 
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(notes_);
-  }
+  void serialize(auto& ar) { ar(notes_); }
 
   /// Work of this epoch was begun or is done. (Not while its children are yet to be counted.)
   static void done(int epoch) { epoch_record->add(epoch, -1); }
@@ -119,11 +116,10 @@ class TreeElement : public Chare<TreeElement, Index1> {
   void split(TreeNode node, int n_most) {
     Random random(mix(node.seed ^ 0x73706c6974U));
     move_by_chance(random);
-    const auto n = static_cast<int>(random.below(static_cast<std::uint64_t>(n_most + 1)));
+    const auto n = draw(random, n_most + 1);
     for (int k = 0; k < n && node.energy > 0; ++k) {
       const TreeNode child{node.epoch, (node.energy - 1) / n, random()};
-      const Index to{
-          static_cast<int>(random.below(static_cast<std::uint64_t>(epoch_record->n_elements)))};
+      const Index to{draw(random, epoch_record->n_elements)};
       const auto element = array()[to];
       switch (random.below(10)) {
         case 0:

@@ -58,10 +58,7 @@ class FailingElement : public Chare<FailingElement, Index1> {
   }
   void bad_input() { tess::fail(ErrorCode::bad_value, "the size is -1; give a positive one"); }
 
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(n_caught_, pages_);
-  }
+  void serialize(auto& ar) { ar(n_caught_, pages_); }
 
  private:
   Task deep() {
@@ -74,105 +71,33 @@ class FailingElement : public Chare<FailingElement, Index1> {
   Mailbox<&Page::key> pages_;
 };
 
-/// A run is to end with this code and name these things.
-void expect_end(const Result& result, int code, std::initializer_list<std::string> names) {
-  expect_exit(result, code);
+using Elements = ArrayProxy<FailingElement>;
+
+/// A program that ends with an error, and what its report names: of "element" and "absent" the
+/// names of element i, and of element n + i, which does not exist.
+struct Failing {
+  void (*send)(const Elements&, int n, int i);
+  int exit_code;
+  std::vector<std::string> names;
+};
+template <auto F>
+void to_one(const Elements& elements, int /*n*/, int i) {
+  elements[{i}].send<F>();
+}
+
+void run_one_of(Case& test, const std::vector<Failing>& programs, int least) {
+  const int n = test.draw(least, 9), i = test.draw(0, n - 1);
+  const Failing& one = programs[test.random.below(programs.size())];
+  const Result result = test.run([&] { one.send(tess::create<FailingElement>(range(n)), n, i); });
+  expect_exit(result, one.exit_code);
   const std::string report = result.failure();
-  for (const std::string& name : names)
+  for (std::string name : one.names) {
+    if (name == "element") name = text("FailingElement[", i, "]");
+    if (name == "absent") name = text("FailingElement[", n + i, "]");
     expect(report.find(name) != std::string::npos, "the report does not name ", name, ": ", report);
-}
-
-}  // namespace
-
-void deadlocks(Case& test) {
-  const int n = test.draw(2, 9), i = test.draw(0, n - 1);
-  const auto elements = [n] { return tess::create<FailingElement>(range(n)); };
-  const std::string element = text("FailingElement[", i, "]");
-  switch (test.draw(0, 4)) {
-    case 0: {
-      const Result result = test.run([&] { elements()[{i}].send<&FailingElement::read>(); });
-      expect_end(result, 1, {"deadlock", element, "FailingElement::read", "key 7"});
-      break;
-    }
-    case 1: {
-      const Result result = test.run([&] { elements()[{n + i}].send<&FailingElement::nothing>(); });
-      expect_end(result, 1,
-                 {"deadlock", text("FailingElement[", n + i, "]"), "FailingElement::nothing",
-                  "not exist"});
-      break;
-    }
-    case 2: {
-      const Result result = test.run([&] { elements().broadcast<&FailingElement::give>(1); });
-      expect_end(result, 1, {"deadlock", "reduction 0", "contribution", "FailingElement[0]"});
-      break;
-    }
-    case 3: {
-      const Result result = test.run([&] { elements()[{i}].send<&FailingElement::read_inside>(); });
-      expect_end(
-          result, 1,
-          {"deadlock", element, "FailingElement::read_inside", "epoch", "FailingElement::read"});
-      break;
-    }
-    default: {
-      const Result result = test.run([&] {
-        const ArrayProxy<FailingElement> nowhere(CollectionId{0x5000000});
-        nowhere[{i}].send<&FailingElement::nothing>();
-      });
-      expect_end(result, 1, {"deadlock", "is not known there"});
-    }
   }
 }
 
-void exceptions(Case& test) {
-  const int n = test.draw(1, 9), i = test.draw(0, n - 1);
-  const std::string element = text("FailingElement[", i, "]");
-  const auto run = [&](auto&& send) {
-    return test.run([&] {
-      const auto elements = tess::create<FailingElement>(range(n));
-      send(elements, elements[{i}]);
-    });
-  };
-  switch (test.draw(0, 7)) {
-    case 0:
-      expect_end(run([](auto&, auto one) { one.template send<&FailingElement::fail>(); }), 1,
-                 {"the error of an entry method", element, "FailingElement::fail", "on PE"});
-      break;
-    case 1:
-      expect_end(run([i](auto& elements, auto) {
-                   elements.template broadcast<&FailingElement::fail_in>(i);
-                 }),
-                 1, {"the error of an entry method", element, "FailingElement::fail_in", "on PE"});
-      break;
-    case 2:
-      expect_end(run([](auto&, auto one) { one.template send<&FailingElement::fail_later>(); }), 1,
-                 {"the error of a coroutine", element, "FailingElement::fail_later", "on PE"});
-      break;
-    case 3:
-      expect_end(run([](auto&, auto one) { one.template send<&FailingElement::fail_deep>(); }), 1,
-                 {"the error of a task", element, "FailingElement::fail_deep", "on PE"});
-      break;
-    case 4:
-      expect_end(
-          run([](auto&, auto one) { one.template send<&FailingElement::fail_in_epoch>(); }), 1,
-          {"the error of an epoch's body", element, "FailingElement::fail_in_epoch", "on PE"});
-      break;
-    case 5:
-      expect_end(run([](auto&, auto one) { one.template send<&FailingElement::bad_input>(); }), 2,
-                 {"error: the size is -1; give a positive one"});
-      break;
-    case 6:
-      expect_end(run([n](auto& elements, auto) { elements[{n}].insert(1); }), 1,
-                 {"the error of a constructor", "on PE"});
-      break;
-    default: {
-      const Result result =
-          test.run([] { throw std::runtime_error("the error of the main program"); });
-      expect_end(result, 1, {"the error of the main program", "on PE 0"});
-    }
-  }
-}
-
-namespace {
 Task destroy_and_send(int n, int n_messages) {
   const auto elements = tess::create<FailingElement>(range(n));
   co_await epoch([&] { elements.broadcast<&FailingElement::end>(); });
@@ -184,7 +109,59 @@ Task destroy_and_send(int n, int n_messages) {
     for (int i = 0; i < n; ++i) elements[{i}].send<&FailingElement::nothing>();
   });
 }
+
 }  // namespace
+
+void deadlocks(Case& test) {
+  using E = FailingElement;
+  run_one_of(
+      test,
+      {{to_one<&E::read>, 1, {"deadlock", "element", "FailingElement::read", "key 7"}},
+       {[](const Elements& all, int n, int i) { all[{n + i}].send<&E::nothing>(); },
+        1,
+        {"deadlock", "absent", "FailingElement::nothing", "not exist"}},
+       {[](const Elements& all, int, int) { all.broadcast<&E::give>(1); },
+        1,
+        {"deadlock", "reduction 0", "contribution", "FailingElement[0]"}},
+       {to_one<&E::read_inside>,
+        1,
+        {"deadlock", "element", "FailingElement::read_inside", "epoch", "FailingElement::read"}},
+       {[](const Elements&, int, int i) {
+          Elements(CollectionId{0x5000000})[{i}].send<&E::nothing>();
+        },
+        1,
+        {"deadlock", "is not known there"}}},
+      2);
+}
+
+void exceptions(Case& test) {
+  using E = FailingElement;
+  const std::string entry = "the error of an entry method", pe = "on PE";
+  run_one_of(test,
+             {{to_one<&E::fail>, 1, {entry, "element", "FailingElement::fail", pe}},
+              {[](const Elements& all, int, int i) { all.broadcast<&E::fail_in>(i); },
+               1,
+               {entry, "element", "FailingElement::fail_in", pe}},
+              {to_one<&E::fail_later>,
+               1,
+               {"the error of a coroutine", "element", "FailingElement::fail_later", pe}},
+              {to_one<&E::fail_deep>,
+               1,
+               {"the error of a task", "element", "FailingElement::fail_deep", pe}},
+              {to_one<&E::fail_in_epoch>,
+               1,
+               {"the error of an epoch's body", "element", "FailingElement::fail_in_epoch", pe}},
+              {to_one<&E::bad_input>, 2, {"error: the size is -1; give a positive one"}},
+              {[](const Elements& all, int n, int) { all[{n}].insert(1); },
+               1,
+               {"the error of a constructor", pe}},
+              {[](const Elements&, int, int) {
+                 throw std::runtime_error("the error of the main program");
+               },
+               1,
+               {"the error of the main program", "on PE 0"}}},
+             1);
+}
 
 void undelivered_messages(Case& test) {
   const int n = test.draw(1, 9), n_messages = test.draw(0, 20);

@@ -40,10 +40,7 @@ struct Counted {
   Counted(Counted&& other) noexcept : seed(other.seed) { ++exit_record->n_alive; }
   Counted& operator=(const Counted&) = default;
   ~Counted() { --exit_record->n_alive; }
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(seed);
-  }
+  void serialize(auto& ar) { ar(seed); }
   std::uint64_t seed = 0;
 };
 struct Early {
@@ -57,14 +54,13 @@ class LoadElement : public Chare<LoadElement, Index1> {
     exit_record->runs(tess::my_pe());
     Random random(counted.seed);
     if (random.chance(exit_record->exit_chance)) {
-      exit_record->exit_here(tess::my_pe(), static_cast<int>(random.below(100)));
+      exit_record->exit_here(tess::my_pe(), draw(random, 100));
       return;
     }
     if (random.chance(0.2)) migrate_to(any_pe(random));
     Counted next;
     next.seed = random();
-    const Index to{
-        static_cast<int>(random.below(static_cast<std::uint64_t>(2 * exit_record->n_elements)))};
+    const Index to{draw(random, 2 * exit_record->n_elements)};
     switch (random.below(12)) {
       case 0:
         if (!exit_record->reduces.exchange(true)) array().broadcast<&LoadElement::give>(next);
@@ -108,10 +104,7 @@ class LoadElement : public Chare<LoadElement, Index1> {
     exit_record->runs(tess::my_pe());
   }
 
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(drop_, early_);
-  }
+  void serialize(auto& ar) { ar(drop_, early_); }
 
  private:
   Task inner(Counted counted) {

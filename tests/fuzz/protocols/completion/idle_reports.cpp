@@ -19,8 +19,7 @@ class Worker : public Chare<Worker, Index1> {
   void work(int n_more) {
     tess::charge(Time(static_cast<std::int64_t>(idle_draws->random.below(idle_draws->longest))));
     if (n_more > 0) {
-      const auto to = static_cast<int>(
-          idle_draws->random.below(static_cast<std::uint64_t>(idle_draws->n_elements)));
+      const auto to = draw(idle_draws->random, idle_draws->n_elements);
       ++idle_draws->due;
       array()[{to}].send<&Worker::work>(n_more - 1);
     }

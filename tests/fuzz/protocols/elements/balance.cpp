@@ -55,10 +55,7 @@ class Life : public Chare<Life, Index2> {
   [[nodiscard]] std::array<double, 3> balance_position() const {
     return {1.0 * index().x, 1.0 * index().y, 0};
   }
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(phase_, round_, waiting_);
-  }
+  void serialize(auto& ar) { ar(phase_, round_, waiting_); }
 
  private:
   void live();
@@ -105,11 +102,6 @@ void Life::live() {
   at_sync();
 }
 
-std::string drawn_strategy(Random& random) {
-  const auto& names = balance::strategy_names();
-  return names[random.below(names.size())];
-}
-
 /// Checks the place of each element under `rotate` after so many rounds.
 class Rotor : public Chare<Rotor, Index1> {
  public:
@@ -131,10 +123,7 @@ class Rotor : public Chare<Rotor, Index1> {
       ++n_done;
     }
   }
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(first_, round_);
-  }
+  void serialize(auto& ar) { ar(first_, round_); }
 
  private:
   int first_ = 0, round_ = 0;
@@ -161,10 +150,7 @@ class PhasedWorker : public Chare<PhasedWorker, Index1> {
     if (++phase_ < n_phases) part(0);
   }
   [[nodiscard]] std::array<double, 3> balance_position() const { return {1.0 * index().x, 0, 0}; }
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(phase_);
-  }
+  void serialize(auto& ar) { ar(phase_); }
 
  private:
   int phase_ = 0;
@@ -217,13 +203,7 @@ class Runner : public Chare<Runner, Index1> {
                                                                                               1);
   }
   [[nodiscard]] std::array<double, 3> balance_position() const { return {1.0 * index().x, 0, 0}; }
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(none_);
-  }
-
- private:
-  int none_ = 0;
+  void serialize(auto& /*ar*/) {}
 };
 
 }  // namespace
@@ -236,7 +216,7 @@ void balance_rounds(Case& test) {
   l.move_chance = 0.1 * test.draw(0, 3);
   const int n = test.draw(0, 24);
   BalanceOptions options;
-  options.strategy = drawn_strategy(test.random);
+  options.strategy = any_of(balance::strategy_names(), test.random);
   if (test.draw(0, 3) == 0) options.when = BalanceWhen::automatic;
   const bool late = test.draw(0, 3) == 0;  // balancing starts when some already wait
   test.run_clean([&] {
@@ -277,7 +257,7 @@ void balance_first_round(Case& test) {
   if (!moves) test.machine.migration = 0;
   const bool by_broadcast = test.draw(0, 1) == 0;
   PhasedWorker::every_leaves = test.draw(0, 3);
-  LoadsShown shown(drawn_strategy(test.random), !moves);
+  LoadsShown shown(any_of(balance::strategy_names(), test.random), !moves);
   for (std::int32_t x = 0; x < n; ++x) shown.know(x);
   test.run_clean([&] {
     const auto workers = create<PhasedWorker>(range(n));
@@ -294,7 +274,7 @@ void balance_periodic(Case& test) {
   Runner::n_hops = 0;
   const int n = test.draw(1, 20), n_runs = test.draw(1, 10), n_hops = test.draw(1, 200);
   BalanceOptions options;
-  options.strategy = drawn_strategy(test.random);
+  options.strategy = any_of(balance::strategy_names(), test.random);
   options.when = BalanceWhen::periodic;
   options.period = std::chrono::microseconds(test.draw(5, 500));
   test.run_clean([&] {

@@ -33,10 +33,7 @@ class BarrierElement : public Chare<BarrierElement, Index1> {
     if (++phase_ <= n_phases) reach();
   }
   [[nodiscard]] std::array<double, 3> balance_position() const { return {1.0 * index().x, 0, 0}; }
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(phase_, moves_);
-  }
+  void serialize(auto& ar) { ar(phase_, moves_); }
 
  private:
   void move_away() {
@@ -58,8 +55,7 @@ void balance_barrier(Case& test) {
   BarrierElement::n = test.draw(1, 20);
   for (auto& count : BarrierElement::reached) count = 0;
   BalanceOptions options;
-  const auto& names = balance::strategy_names();
-  do options.strategy = names[test.random.below(names.size())];
+  do options.strategy = any_of(balance::strategy_names(), test.random);
   while (options.strategy == "none");  // no barrier
   const int n_moves = test.draw(0, 3);
   test.run_clean([&] {

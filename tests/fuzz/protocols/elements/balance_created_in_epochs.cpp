@@ -50,10 +50,7 @@ class LateElement : public Chare<LateElement, Index1> {
     if (round_ < late_expected->end_of_stage(round_ - 1)) co_await phase();
   }
   [[nodiscard]] std::array<double, 3> balance_position() const { return {1.0 * index().x, 0, 0}; }
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(called_from_, round_, leaves_);
-  }
+  void serialize(auto& ar) { ar(called_from_, round_, leaves_); }
 
  private:
   Task phase() {
@@ -118,8 +115,7 @@ void balance_created_in_epochs(Case& test) {
   const int n_stages = test.draw(1, most_stages), n_first = test.draw(0, 10),
             n_new = test.draw(0, 4);
   BalanceOptions options;
-  const auto& names = balance::strategy_names();
-  do options.strategy = names[test.random.below(names.size())];
+  do options.strategy = any_of(balance::strategy_names(), test.random);
   while (options.strategy == "none");  // no barrier
   if (test.draw(0, 3) == 0) options.when = BalanceWhen::automatic;
   test.run_clean([&]() -> Task { return stages(n_stages, n_first, n_new, options); });

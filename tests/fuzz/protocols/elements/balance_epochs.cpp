@@ -50,10 +50,7 @@ class EpochElement : public Chare<EpochElement, Index1> {
   void create(std::int32_t first_phase) { first_phase_ = first_phase; }
   void live(std::int32_t phase);
   [[nodiscard]] std::array<double, 3> balance_position() const { return {1.0 * index().x, 0, 0}; }
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(first_phase_, was_on_);
-  }
+  void serialize(auto& ar) { ar(first_phase_, was_on_); }
 
  private:
   std::int32_t first_phase_ = 1 << 20;
@@ -113,8 +110,7 @@ void balance_epochs(Case& test) {
     phases.rotates = true;
     test.machine.migration = 0;
   } else {
-    const auto& names = balance::strategy_names();
-    options.strategy = names[test.random.below(names.size())];
+    options.strategy = any_of(balance::strategy_names(), test.random);
     if (test.draw(0, 2) == 0) options.when = BalanceWhen::automatic;
   }
   test.run_clean([&] { return live_all(phases, options); });

@@ -26,13 +26,7 @@ class NewElement : public Chare<NewElement, Index1> {
   }
   void give(Callback<int> target) { contribute(sum, 1, target); }
   void resume_from_sync() { ++construction->n_resumed; }
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(none_);
-  }
-
- private:
-  int none_ = 0;
+  void serialize(auto& /*ar*/) {}
 };
 
 class NewMember : public Group<NewMember> {

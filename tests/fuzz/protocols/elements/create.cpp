@@ -2,6 +2,7 @@
 #include "tests/fuzz/protocols/scenarios.hpp"
 
 #include <algorithm>
+#include <functional>
 
 namespace tess::fuzz {
 namespace {
@@ -13,17 +14,9 @@ struct Deliveries {
   std::vector<int> lives;      // by number of the index
   std::vector<int> alive;
 
-  void deliver(int token) {
+  void count(std::vector<int>& of, int number) {
     const std::lock_guard lock(mutex);
-    ++delivered.at(static_cast<std::size_t>(token));
-  }
-  void live(int number) {
-    const std::lock_guard lock(mutex);
-    ++lives.at(static_cast<std::size_t>(number));
-  }
-  void find(int number) {
-    const std::lock_guard lock(mutex);
-    ++alive.at(static_cast<std::size_t>(number));
+    ++of.at(static_cast<std::size_t>(number));
   }
   void check_each_once() {
     for (std::size_t i = 0; i < delivered.size(); ++i)
@@ -68,22 +61,19 @@ class Demanded : public Chare<Demanded<Index>, Index> {
 
   void count(Token token) {
     begin(token);
-    oracle->deliver(token.token);
+    oracle->count(oracle->delivered, token.token);
     Random random(mix(static_cast<std::uint64_t>(token.token) ^ 0x1234));
     if (random.chance(0.2)) move(random);
   }
-  void appear() { oracle->find(number_); }
+  void appear() { oracle->count(oracle->alive, number_); }
 
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(number_);
-  }
+  void serialize(auto& ar) { ar(number_); }
 
  private:
   void begin(Token token) {
     if (number_ < 0) {
       number_ = token.index;
-      oracle->live(number_);
+      oracle->count(oracle->lives, number_);
     }
     expect(number_ == token.index, "a message to ", token.index, " met ", number_);
   }
@@ -169,20 +159,15 @@ class Crowd : public Group<Crowd<Index>> {
 };
 
 // Outside of the templates: g++ 12 fails on a coroutine with an epoch in one.
-struct Steps {
-  virtual ~Steps() = default;
-  virtual void begin() = 0;
-  virtual void send() = 0;
-  virtual void end() = 0;
-};
-Task drive(Steps& steps) {
-  steps.begin();
-  co_await epoch([&steps] { steps.send(); });
-  steps.end();
+using Code = std::function<void()>;
+Task drive(Code begin, Code send, Code end) {
+  begin();
+  co_await epoch(send);
+  end();
 }
 
 template <class Index>
-class Scene final : Steps {
+class Scene {
  public:
   explicit Scene(Case& test) : test_(test) {
     oracle = &deliveries_;
@@ -197,7 +182,8 @@ class Scene final : Steps {
   void create() {
     burst_.way = static_cast<Way>(test_.draw(0, 2));
     deliveries_.delivered.assign(tokens(test_.machine.pes), 0);
-    test_.run_clean([this]() -> Task { return drive(*this); });
+    test_.run_clean(
+        [this] { return drive([this] { begin(); }, [this] { send(); }, [this] { end(); }); });
     deliveries_.check_each_once();
   }
 
@@ -205,7 +191,8 @@ class Scene final : Steps {
     burst_.way = Way::first;
     deliveries_.delivered.assign(tokens(test_.machine.pes + 1), 0);
     from_ = PeId{test_.draw(0, test_.machine.pes - 1)};
-    test_.run_clean([this]() -> Task { return drive(*this); });
+    test_.run_clean(
+        [this] { return drive([this] { begin(); }, [this] { send(); }, [this] { end(); }); });
     // An insertion carries a token, too, but delivers none.
     for (int i = 0; i < burst_.n_indices; ++i) {
       int& n = deliveries_.delivered[tokens(test_.machine.pes) + static_cast<std::size_t>(i)];
@@ -221,15 +208,15 @@ class Scene final : Steps {
   [[nodiscard]] std::size_t tokens(int n_senders) const {
     return static_cast<std::size_t>(n_senders) * static_cast<std::size_t>(burst_.n_indices);
   }
-  void send() override {
+  void send() {
     crowd_.template broadcast<&Crowd<Index>::burst>(burst_);
     if (burst_.way == Way::first) crowd_[from_].template send<&Crowd<Index>::bring>(burst_, 0);
   }
-  void begin() override {
+  void begin() {
     burst_.array = tess::create<Demanded<Index>>(sparse);
     crowd_ = create_group<Crowd<Index>>();
   }
-  void end() override { burst_.array.template broadcast<&Demanded<Index>::appear>(); }
+  void end() { burst_.array.template broadcast<&Demanded<Index>::appear>(); }
 
   Case& test_;
   Deliveries deliveries_;

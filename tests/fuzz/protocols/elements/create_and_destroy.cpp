@@ -68,10 +68,7 @@ class Target : public Chare<Target<Mode>, Index2> {
     ++lives_record->found[at()];
   }
 
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(n_taken_);
-  }
+  void serialize(auto& ar) { ar(n_taken_); }
 
  private:
   [[nodiscard]] std::size_t at() const { return static_cast<std::size_t>(this->index().x); }
@@ -99,7 +96,7 @@ class Agent : public Group<Agent<Mode>> {
   void act(ArrayProxy<Element> array, Orders orders) {
     Random random(
         mix(orders.seed ^ static_cast<std::uint64_t>(orders.n_steps * 64 + this->pe().value)));
-    const auto i = static_cast<int>(random.below(static_cast<std::uint64_t>(orders.n_indices)));
+    const auto i = draw(random, orders.n_indices);
     const auto element = array[{i, 1}];
     switch (random.below(9)) {
       case 0:

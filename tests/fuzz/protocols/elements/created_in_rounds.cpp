@@ -110,8 +110,7 @@ class Cell : public Chare<Cell, Name> {
     contribute(JoinShares{}, Share{0, 0, 0, 0, {Entry{index(), 0, 0, false, {}}}}, target);
   }
 
-  template <class Ar>
-  void serialize(Ar& ar) {
+  void serialize(auto& ar) {
     ar(created_, may_end_, floor_, first_round_, last_round_, children_, judge_, waits_);
   }
 

@@ -86,10 +86,7 @@ class EndingTarget : public Chare<EndingTarget, Index1> {
   }
   void resume_from_sync() { waits_ = false; }
 
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(mark_, waits_);
-  }
+  void serialize(auto& ar) { ar(mark_, waits_); }
 
  private:
   void count(int n) const {
@@ -133,7 +130,7 @@ class Operator : public Group<Operator> {
 void send_chain(const ArrayProxy<EndingTarget>& targets, Chain chain, Random& random) {
   chain.token = ends_record->token();
   const int n = ends_record->n_indices;
-  const auto target = targets[{static_cast<int>(random.below(static_cast<std::uint64_t>(n)))}];
+  const auto target = targets[{draw(random, n)}];
   switch (random.below(8)) {
     case 0:
       target.send_or_create_here<&EndingTarget::run>(chain);
@@ -244,8 +241,7 @@ bool balance(const ArrayProxy<EndingTarget>& targets, Random& random) {
 Task live_and_end(GroupProxy<Operator> operators, std::uint64_t seed) {
   Random random(seed);
   const PeId other = any_pe(random);
-  const Chain chain{operators, static_cast<int>(random.below(1000)),
-                    static_cast<int>(random.below(12))};
+  const Chain chain{operators, draw(random, 1000), draw(random, 12)};
   ArrayProxy<EndingTarget> targets;
   bool is_balanced = false;
   const auto make = [&] {

@@ -21,8 +21,7 @@ class Alive {
 
 class Transient : public Chare<Transient, Index1> {
  public:
-  template <class Ar>
-  void serialize(Ar&) {}
+  void serialize(auto&) {}
 
  private:
   Alive alive_;
@@ -41,10 +40,7 @@ struct Collections {
     array.destroy();
     group.destroy();
   }
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(array, group);
-  }
+  void serialize(auto& ar) { ar(array, group); }
 };
 
 /// Some three PEs do, of many: each of the others may end what they create.

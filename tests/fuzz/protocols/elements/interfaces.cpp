@@ -73,10 +73,7 @@ class AccountAt : public Chare<Derived>, public Account {
     }
   }
 
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(holds_, all_);
-  }
+  void serialize(auto& ar) { ar(holds_, all_); }
 
  private:
   void move() {

@@ -74,10 +74,7 @@ class MappedElement : public Chare<MappedElement, Index2> {
   void take(std::int64_t value) { total_ += value; }
   void report(Callback<Totals> target) { contribute(gather, total_, target); }
 
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(total_);
-  }
+  void serialize(auto& ar) { ar(total_); }
 
  private:
   void begins_on(PeId place) const {

@@ -36,10 +36,7 @@ class Visitor : public Chare<Visitor, Index3> {
     const std::lock_guard lock(visits_record->mutex);
     ++visits_record->delivered[static_cast<std::size_t>(token)];
   }
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(seen_);
-  }
+  void serialize(auto& ar) { ar(seen_); }
 
  private:
   std::vector<bool> seen_{};

@@ -116,7 +116,7 @@ class WaitingElement : public Chare<WaitingElement, Index1> {
       want += wait_draws->text(turn.round, 200 + index().x);
       ++n_left;
     }
-    const int n_own = static_cast<int>(random.below(4)) + (end == 1 ? 1 : 0);
+    const int n_own = draw(random, 4) + (end == 1 ? 1 : 0);
     for (int n = 0; n < n_own; ++n, ++n_left) {
       const Request request{index().x, {turn.round, random()}};
       want += request.note.text;
@@ -179,16 +179,12 @@ class WaitingElement : public Chare<WaitingElement, Index1> {
     return index == 0 || (wait_draws->text(round, index) & 1U) != 0;
   }
 
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(notes_);
-  }
+  void serialize(auto& ar) { ar(notes_); }
 
  private:
   [[nodiscard]] bool is_leaver() const { return index().x >= wait_draws->n_hosts; }
   [[nodiscard]] ElementProxy<WaitingElement> host(Random& random) const {
-    return array()[{
-        static_cast<int>(random.below(static_cast<std::uint64_t>(wait_draws->n_hosts)))}];
+    return array()[{draw(random, wait_draws->n_hosts)}];
   }
   void move(const Note& why) {
     Random random(mix(why.text + static_cast<std::uint64_t>(index().x)));
@@ -213,7 +209,7 @@ Task leave_and_insert() {
   const auto counts = create_group<LeaverCount>();
   for (int round = 0; round < wait_draws->n_rounds; ++round) {
     Random random = wait_draws->draws(round, -1);
-    Turn turn{round, static_cast<int>(random.below(4)), static_cast<int>(random.below(4)), {}, {}};
+    Turn turn{round, draw(random, 4), draw(random, 4), {}, {}};
     turn.left = counts[any_pe(random)].target<&LeaverCount::left>();
     std::vector<Index1> members;
     for (int x = 0; x < wait_draws->n_elements(); ++x)

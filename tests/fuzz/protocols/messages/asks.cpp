@@ -30,8 +30,7 @@ class Destroyable : public Chare<Destroyable, Index1> {
  public:
   [[nodiscard]] std::uint64_t age(std::uint64_t question) { return answer_of(question, index().x); }
   void end() { destroy(); }
-  template <class Ar>
-  void serialize(Ar& /*ar*/) {}
+  void serialize(auto& /*ar*/) {}
 };
 
 class Replier : public Chare<Replier, Index1> {
@@ -85,13 +84,12 @@ class Replier : public Chare<Replier, Index1> {
     ++ask_record->n_done;
   }
 
-  template <class Ar>
-  void serialize(Ar& /*ar*/) {}
+  void serialize(auto& /*ar*/) {}
 
  private:
   Task ask_value(Random& random) {
     const std::uint64_t question = note(random());
-    const int to = draw(random);
+    const int to = draw(random, ask_record->n_elements);
     std::uint64_t answer = 0;
     std::string refusal;
     try {
@@ -103,12 +101,13 @@ class Replier : public Chare<Replier, Index1> {
   }
   Task ask_coroutine(Random& random) {
     const std::uint64_t question = note(random());
-    const int depth = static_cast<int>(random.below(3));
+    const int depth = draw(random, 3);
     std::uint64_t last = question;
     for (int i = 0; i < depth; ++i) last = mix(last);
     bool refused = false;
     try {
-      co_await array()[{draw(random)}].ask<&Replier::passes_on>(question, depth);
+      co_await array()[{draw(random, ask_record->n_elements)}].ask<&Replier::passes_on>(question,
+                                                                                        depth);
     } catch (const Error& error) {
       refused = error.code() == ErrorCode::bad_value;
     }
@@ -117,7 +116,7 @@ class Replier : public Chare<Replier, Index1> {
   /// With a deadline: the value in time, or an error.
   Task ask_within(Random& random) {
     const std::uint64_t question = note(random() / 7 * 7 + 1);
-    const int to = draw(random);
+    const int to = draw(random, ask_record->n_elements);
     std::uint64_t answer = 0;
     bool late = false;
     try {
@@ -131,7 +130,8 @@ class Replier : public Chare<Replier, Index1> {
   Task ask_two(Random& random) {
     const std::uint64_t first = note(random() / 7 * 7 + 1);
     const std::uint64_t second = note(random() / 7 * 7 + 2);
-    const int to = draw(random), other = draw(random);
+    const int to = draw(random, ask_record->n_elements),
+              other = draw(random, ask_record->n_elements);
     const auto [a, b] = co_await when_all(array()[{to}].ask<&Replier::value>(first),
                                           array()[{other}].ask<&Replier::value>(second));
     expect(a == answer_of(first, to) && b == answer_of(second, other),
@@ -139,7 +139,7 @@ class Replier : public Chare<Replier, Index1> {
   }
   Task ask_or_sleep(Random& random) {
     const std::uint64_t question = note(random() / 7 * 7 + 3);
-    const int to = draw(random);
+    const int to = draw(random, ask_record->n_elements);
     const Time limit = delay(random);
     const Time began = now();
     const auto first =
@@ -151,7 +151,7 @@ class Replier : public Chare<Replier, Index1> {
     }
   }
   void send_later(Random& random, int n) {
-    const auto timer = array()[{draw(random)}].send_after<&Replier::arrive>(
+    const auto timer = array()[{draw(random, ask_record->n_elements)}].send_after<&Replier::arrive>(
         delay(random), static_cast<std::uint64_t>(n));
     ++ask_record->n_delayed;
     if (random.chance(0.3)) {  // before it can have run, since this code has not waited
@@ -159,13 +159,13 @@ class Replier : public Chare<Replier, Index1> {
       ++ask_record->n_cancelled;
     }
     if (random.chance(0.3)) {
-      (void)array()[{draw(random)}].ask<&Replier::value>(note(random()));  // given up at once
+      (void)array()[{draw(random, ask_record->n_elements)}].ask<&Replier::value>(
+          note(random()));  // given up at once
     }
   }
   Task ask_destroyable(Random& random, ArrayProxy<Destroyable> destroyables) {
     const std::uint64_t question = random();
-    const int to =
-        static_cast<int>(random.below(static_cast<std::uint64_t>(ask_record->n_destroyables)));
+    const int to = draw(random, ask_record->n_destroyables);
     std::uint64_t answer = 0;
     bool was_dead = false, is_dead = false;
     try {
@@ -189,9 +189,6 @@ class Replier : public Chare<Replier, Index1> {
   static void serve(std::uint64_t question) {
     ++ask_record->n_served;
     ask_record->served += question >> 8U;
-  }
-  static int draw(Random& random) {
-    return static_cast<int>(random.below(static_cast<std::uint64_t>(ask_record->n_elements)));
   }
   static Time delay(Random& random) {
     return Time(static_cast<std::int64_t>(random.below(ask_record->longest)));

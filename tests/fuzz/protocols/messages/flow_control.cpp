@@ -65,18 +65,15 @@ class Producer : public Group<Producer> {
         expect(has_room(to), "a producer goes on without room");
       }
       Load load{pe(), {}};
-      load.values.assign(random.below(static_cast<std::uint64_t>(flow_record->most_numbers)),
-                            2.5);
+      load.values.assign(random.below(static_cast<std::uint64_t>(flow_record->most_numbers)), 2.5);
       group()[to].send<&Producer::consume>(std::move(load));
     }
   }
   void consume(Load load) {
     (void)charge(std::chrono::milliseconds(1));  // slower than the messages arrive
     if (load.packed)
-      flow_record->holds(load.sender, tess::machine().process_of(pe()), load.n_bytes(),
-                         false);
-    for (const double value : load.values)
-      expect(value == 2.5, "a value was garbled on its way");
+      flow_record->holds(load.sender, tess::machine().process_of(pe()), load.n_bytes(), false);
+    for (const double value : load.values) expect(value == 2.5, "a value was garbled on its way");
     ++flow_record->n_arrived;
   }
 };

@@ -64,10 +64,7 @@ class RingElement : public Chare<RingElement, Index1> {
     expect(sides_.size() <= 4, "an element is ", sides_.size(), " messages behind");
   }
 
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(value_, sides_);
-  }
+  void serialize(auto& ar) { ar(value_, sides_); }
 
  private:
   void move(Random& random) { migrate_to(any_pe(random)); }

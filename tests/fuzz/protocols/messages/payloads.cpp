@@ -96,14 +96,11 @@ class Carrier : public Chare<Carrier, Index1> {
       ++relay->n_ended;
       return;
     }
-    const Index to{static_cast<int>(random.below(static_cast<std::uint64_t>(relay->n_elements)))};
+    const Index to{draw(random, relay->n_elements)};
     array()[to].send<&Carrier::hand_on>(
         random.chance(0.5) ? std::move(payload) : Payload::of(random()), left - 1);
   }
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(seed_, values_);
-  }
+  void serialize(auto& ar) { ar(seed_, values_); }
 
  private:
   std::uint64_t seed_ = 0;

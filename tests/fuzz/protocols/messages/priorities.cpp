@@ -42,10 +42,7 @@ class GatheredElement : public Chare<GatheredElement> {
   void move(PeId to) { migrate_to(to); }
   using EntryAttributes = Attributes<EntryMethod<&GatheredElement::run_tagged, Priority{3}>>;
 
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(was_moved_);
-  }
+  void serialize(auto& ar) { ar(was_moved_); }
 
  private:
   bool was_moved_ = false;
@@ -71,8 +68,7 @@ class PriorityMember : public Group<PriorityMember> {
   void send_all(SendOrder order) {
     Random random(mix(priority_record->seed ^ static_cast<std::uint64_t>(pe().value + 1)));
     for (int i = 0; i < priority_record->n_messages; ++i) {
-      const auto to = order.elements[{static_cast<std::int32_t>(
-          random.below(static_cast<std::uint64_t>(priority_record->n_elements)))}];
+      const auto to = order.elements[{draw(random, priority_record->n_elements)}];
       const std::int64_t priority = draw_priority(random, priority_record->n_priorities);
       if (priority == 3) {
         to.send<&GatheredElement::run_tagged>(priority, order.busy);
@@ -116,7 +112,9 @@ Task run_gathered(PeId busy) {
   const auto members = create_group<PriorityMember>();
   const auto elements = create<GatheredElement>(range(priority_record->n_elements));
   // The first runs only teach the senders where the elements were.
-  co_await epoch([&] { members.broadcast<&PriorityMember::send_all>(SendOrder{elements, PeId{-1}}); });
+  co_await epoch([&] {
+    members.broadcast<&PriorityMember::send_all>(SendOrder{elements, PeId{-1}});
+  });
   co_await epoch([&] { elements.broadcast<&GatheredElement::move>(busy); });
   co_await epoch([&] { members[busy].send<&PriorityMember::begin>(SendOrder{elements, busy}); });
 }

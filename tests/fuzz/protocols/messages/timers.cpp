@@ -42,20 +42,16 @@ class TimerElement : public Chare<TimerElement, Index1> {
   void report(Callback<std::array<std::uint64_t, 4>> target) {
     contribute(sum, record_, std::move(target));
   }
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(record_);
-  }
+  void serialize(auto& ar) { ar(record_); }
 
  private:
   void set(int energy, Random& random) {
-    for (int n = 1 + static_cast<int>(random.below(2)); n > 0; --n) {
+    for (int n = 1 + draw(random, 2); n > 0; --n) {
       const TimerTree tree{random(), energy};
       record_[0] += 1;
       record_[2] += tree.id >> 8U;
       const Time delay(static_cast<std::int64_t>(random.below(timer_record->longest)));
-      const auto to = array()[{
-          static_cast<int>(random.below(static_cast<std::uint64_t>(timer_record->n_elements)))}];
+      const auto to = array()[{draw(random, timer_record->n_elements)}];
       if (random.chance(0.5)) {
         after(delay, to.target<&TimerElement::ran>(), tree);
         continue;
@@ -77,7 +73,7 @@ class Ticker : public Group<Ticker> {
  public:
   void begin(std::uint64_t seed) {
     Random random(mix(seed ^ static_cast<std::uint64_t>(pe().value)));
-    for (int n = static_cast<int>(random.below(4)); n > 0; --n) start(random);
+    for (int n = draw(random, 4); n > 0; --n) start(random);
   }
   void tick(int n_more) {
     ++timer_record->n_tick_arrivals;
@@ -100,8 +96,8 @@ class Ticker : public Group<Ticker> {
     const Time period(least + static_cast<std::int64_t>(random.below(timer_record->longest)));
     const auto n_pes = static_cast<std::uint64_t>(tess::n_pes());
     const PeId to{static_cast<std::int32_t>(random.below(n_pes))};
-    const auto kind = static_cast<int>(random.below(3));
-    const int n_last = 1 + static_cast<int>(random.below(5));
+    const auto kind = draw(random, 3);
+    const int n_last = 1 + draw(random, 5);
     auto state = std::make_shared<State>();
     state->timer = every(period, [group = group(), to, kind, n_last, state] {
       expect(!state->cancelled, "a timer runs after it was cancelled");

@@ -57,8 +57,7 @@ class InsertedLate : public Chare<InsertedLate, std::uint64_t> {
     if (question % 2 == 0) co_await sleep(Time(static_cast<std::int64_t>(question % 1000)));
     co_return value_of(7, question ^ index());
   }
-  template <class Ar>
-  void serialize(Ar& /*ar*/) {}
+  void serialize(auto& /*ar*/) {}
 };
 /// Is created by what asks it.
 class MadeOnDemand : public Chare<MadeOnDemand, std::uint64_t> {
@@ -68,10 +67,7 @@ class MadeOnDemand : public Chare<MadeOnDemand, std::uint64_t> {
   void move_on(PeId pe) { migrate_to(pe); }
   using EntryAttributes = Attributes<EntryMethod<&MadeOnDemand::at_home, create_home>,
                                      EntryMethod<&MadeOnDemand::here, create_here, Priority{-3}>>;
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(n_asked_);
-  }
+  void serialize(auto& ar) { ar(n_asked_); }
 
  private:
   TaskOf<std::uint64_t> count(std::uint64_t question) {
@@ -154,10 +150,7 @@ class ValueElement : public Chare<ValueElement, Index1> {
   }
   void report(Callback<int> target) { contribute(sum, n_done_, std::move(target)); }
 
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(n_done_, alarm_);
-  }
+  void serialize(auto& ar) { ar(n_done_, alarm_); }
 
  private:
   TaskOf<std::uint64_t> ask_for(int x, std::uint64_t question) {
@@ -168,7 +161,7 @@ class ValueElement : public Chare<ValueElement, Index1> {
   /// Two at once, awaited in the other order; each may fail.
   Task ask_chains(Random& random) {
     const std::uint64_t first = random(), second = random();
-    const int to = draw(random), depth = static_cast<int>(random.below(4));
+    const int to = draw(random, value_draws->n_elements), depth = draw(random, 4);
     auto one = array()[{to}].ask<&ValueElement::chain>(first, depth);
     auto other = chain(second, depth);
     std::optional<std::uint64_t> of_one, of_other;
@@ -189,7 +182,8 @@ class ValueElement : public Chare<ValueElement, Index1> {
   }
   Task ask_replies(Random& random) {
     const std::uint64_t question = random();
-    const int to = draw(random), other = draw(random);
+    const int to = draw(random, value_draws->n_elements),
+              other = draw(random, value_draws->n_elements);
     const auto [reply, sealed] =
         co_await when_all(array()[{to}].ask<&ValueElement::collect>(question),
                           array()[{other}].ask<&ValueElement::sealed>(question));
@@ -200,7 +194,8 @@ class ValueElement : public Chare<ValueElement, Index1> {
   Task ask_late(ValueWork work, Random& random) {
     const std::uint64_t name = random(), question = random();
     const auto insert_late = [&] {
-      array()[{draw(random)}].send<&ValueElement::insert_late>(work.late, name);
+      array()[{draw(random, value_draws->n_elements)}].send<&ValueElement::insert_late>(work.late,
+                                                                                        name);
     };
     const bool first = random.chance(0.3);
     if (first) insert_late();
@@ -215,7 +210,7 @@ class ValueElement : public Chare<ValueElement, Index1> {
   Task ask_on_demand(ValueWork work, Random& random) {
     const std::uint64_t name = random();
     const auto element = work.demanded[name];
-    const int n = 1 + static_cast<int>(random.below(4));
+    const int n = 1 + draw(random, 4);
     for (int k = 1; k <= n; ++k) {
       const std::uint64_t question = random();
       std::uint64_t value = 0;
@@ -232,7 +227,7 @@ class ValueElement : public Chare<ValueElement, Index1> {
   /// The value in time, or an error; the call runs to its end.
   Task ask_in_time(Random& random) {
     const std::uint64_t question = random() / 11 * 11 + 1;
-    const int to = draw(random);
+    const int to = draw(random, value_draws->n_elements);
     const Time limit(static_cast<std::int64_t>(random.below(20'000)));
     std::optional<std::uint64_t> value;
     try {
@@ -252,9 +247,6 @@ class ValueElement : public Chare<ValueElement, Index1> {
     expect(reply.value == want && reply.words == words_of(from, question) &&
                std::ssize(reply.numbers) == value_draws->n_elements,
            "another reply of ", from);
-  }
-  static int draw(Random& random) {
-    return static_cast<int>(random.below(static_cast<std::uint64_t>(value_draws->n_elements)));
   }
 
   int n_done_ = 0;
