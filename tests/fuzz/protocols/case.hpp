@@ -82,6 +82,14 @@ void Case::run_clean(Main main) const {
   expect(result.report.empty(), "the run reports ", result.failure());
 }
 
+/// Guards the oracle of the scenario that runs.
+inline std::mutex oracle;
+template <class F>
+void locked(F change) {
+  const std::lock_guard lock(oracle);
+  change();
+}
+
 // What several scenarios draw.
 
 /// A number of 0 … n − 1.
@@ -91,6 +99,10 @@ void Case::run_clean(Main main) const {
 [[nodiscard]] inline const std::string& any_of(const std::vector<std::string>& names,
                                                Random& random) {
   return names[random.below(names.size())];
+}
+/// Less than this, in nanoseconds.
+[[nodiscard]] inline Time any_time(Random& random, std::uint64_t end) {
+  return Time(static_cast<std::int64_t>(random.below(end)));
 }
 /// Any PE of the run.
 [[nodiscard]] inline PeId any_pe(Random& random) {

@@ -1,5 +1,5 @@
-// The scenario all_at_once: a citizen, which uses all means of control. In each step of a phase it
-// draws one of them: it asks others, conducts a section of its own, opens an epoch, sets timers or
+// The scenario all_at_once: an element that uses all means of control. In each step of a phase it
+// draws one of them: it asks others, uses a section of its own, opens an epoch, sets timers or
 // sends tokens; between two steps it may migrate. It checks each reply against what the function
 // would return, and counts the tokens that reach it.
 #pragma once
@@ -65,10 +65,7 @@ class Caller : public Chare<Caller, Index1>, public Addable {
     }
   }
   void hop(Hop hop) {
-    {
-      const std::lock_guard lock(record->mutex);
-      ++record->hops[hop.epoch];
-    }
+    locked([&] { ++record->hops[hop.epoch]; });
     Random random(mix(hop.epoch ^ static_cast<std::uint64_t>(hop.n_left)));
     if (random.chance(record->move_chance)) migrate_to(any_pe(random));
     if (--hop.n_left == 0) return;
@@ -145,7 +142,7 @@ class Caller : public Chare<Caller, Index1>, public Addable {
   /// The scan at the start of a phase.
   void ranked(std::int64_t before) {
     const std::int64_t me = index().x;
-    expect(before == phase_ + me * (me - 1) / 2, "citizen ", me, " gets ", before,
+    expect(before == phase_ + me * (me - 1) / 2, "element ", me, " gets ", before,
            " from the scan of phase ", phase_);
     ++record->n_ranked;
   }
@@ -159,7 +156,7 @@ class Caller : public Chare<Caller, Index1>, public Addable {
   [[nodiscard]] ElementProxy<Caller> any(Random& random) const {
     return array()[{draw(random, record->n_callers)}];
   }
-  /// A citizen, or a singer that does not end.
+  /// A caller, or a member of sections that does not end.
   [[nodiscard]] InterfaceProxy<Addable> any_addable(const Work& work, Random& random) const {
     if (random.chance(0.5)) return any(random);
     return work.elements[{3 * draw(random, (work.n_elements + 2) / 3)}];
@@ -246,7 +243,7 @@ class Caller : public Chare<Caller, Index1>, public Addable {
         is_dead = std::string(error.what()).find("was destroyed") != std::string::npos;
       }
       expect(is_dead ? SectionMember::may_end(to) : !was_dead && answer == answer_of(question, to),
-             "an element is neither asked nor dead, or lives again");
+             "an element is neither asked nor destroyed, or is there again");
       was_dead = is_dead;
     }
   }
@@ -286,7 +283,7 @@ class Caller : public Chare<Caller, Index1>, public Addable {
     const Hop hop{random(), 1 + draw(random, 6)};
     const ElementProxy<Caller> to = any(random);
     co_await epoch([&] { to.send<&Caller::hop>(hop); });
-    const std::lock_guard lock(record->mutex);
+    const std::lock_guard lock(oracle);
     expect(record->hops[hop.epoch] == hop.n_left, "an epoch ends after ", record->hops[hop.epoch],
            " of ", hop.n_left, " messages");
   }

@@ -32,7 +32,6 @@ struct Record {
   int n_callers = 0, n_steps = 0;
   std::uint64_t longest = 0;  // ns of a deadline or delay
   double move_chance = 0, end_chance = 0;
-  std::mutex mutex{};
   Count sent{};
   std::map<std::uint64_t, int> hops{};  // by epoch
   std::atomic<int> n_elements{0}, n_ticks_sent{0}, n_ticks{0}, n_cut{0}, n_ranked{0};
@@ -48,12 +47,12 @@ inline bool refuses(std::uint64_t question) {
 /// A number that must arrive, at so many elements.
 inline std::uint64_t token(Random& random, int n_copies = 1) {
   const std::uint64_t drawn = random();
-  const std::lock_guard lock(record->mutex);
+  const std::lock_guard lock(oracle);
   for (int i = 0; i < n_copies; ++i) record->sent.note(drawn);
   return drawn;
 }
 inline Time delay(Random& random) {
-  return Time(static_cast<std::int64_t>(random.below(record->longest)));
+  return any_time(random, record->longest);
 }
 
 // --- What receives tokens.

@@ -13,13 +13,12 @@ struct Heard {
   std::uint64_t seed = 0;
   int n_first = 0;
   double create_chance = 0, destroy_chance = 0, move_chance = 0;
-  std::mutex mutex{};
   int n_created = 0;
   std::vector<std::pair<int, std::vector<int>>> lists{};  // index, broadcasts met
   std::vector<int> ended{};                               // indices
 
   void add(int index, const std::vector<int>& met) {
-    const std::lock_guard lock(mutex);
+    const std::lock_guard lock(oracle);
     lists.emplace_back(index, met);
   }
 };
@@ -40,7 +39,7 @@ class Listener : public Chare<Listener, Index1> {
     if (random.chance(heard->move_chance)) move(random);
     if (index().x != 0 && created_ && random.chance(heard->destroy_chance)) {
       heard->add(index().x, met_);
-      const std::lock_guard lock(heard->mutex);
+      const std::lock_guard lock(oracle);
       heard->ended.push_back(index().x);
       destroy();
     }
@@ -61,7 +60,7 @@ class Listener : public Chare<Listener, Index1> {
   void create_child(Random& random) {
     int index = 0;
     {
-      const std::lock_guard lock(heard->mutex);
+      const std::lock_guard lock(oracle);
       if (heard->n_created >= most_created) return;
       index = heard->n_first + heard->n_created++;
     }

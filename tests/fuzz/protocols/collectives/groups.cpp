@@ -9,7 +9,6 @@ namespace {
 
 struct GroupRecord {
   int n_rounds = 0;
-  std::mutex mutex{};
   std::vector<int> n_calls{};  // by PE
   int n_results = 0, n_ordered = 0, n_made = 0;
 };
@@ -27,10 +26,7 @@ class Member : public Group<Member> {
   void call(PeId from, int round) {
     expect(tess::my_pe() == pe(), "a member runs on another PE");
     expect(&group().local() == this, "local() is another member");
-    {
-      const std::lock_guard lock(group_record->mutex);
-      ++group_record->n_calls[static_cast<std::size_t>(pe().value)];
-    }
+    locked([&] { ++group_record->n_calls[static_cast<std::size_t>(pe().value)]; });
     if (round > 0) group()[from].send<&Member::call>(pe(), round - 1);
   }
   void play(int round) {
@@ -44,7 +40,7 @@ class Member : public Group<Member> {
       group().broadcast<&Member::play>(round + 1);
   }
   void ordered(std::vector<std::string> words) {
-    const std::lock_guard lock(group_record->mutex);
+    const std::lock_guard lock(oracle);
     ++group_record->n_ordered;
     const auto n = static_cast<std::size_t>(tess::n_pes());
     expect(words.size() == n, words.size(), " words of ", n, " members");
@@ -52,7 +48,7 @@ class Member : public Group<Member> {
       expect(words[i] == text("word ", i), "word ", i, " is ", words[i]);
   }
   void summed(int total) {
-    const std::lock_guard lock(group_record->mutex);
+    const std::lock_guard lock(oracle);
     ++group_record->n_results;
     const int n = tess::n_pes();
     expect(total == n * (n - 1) / 2, "the sum over all PEs is ", total);
@@ -67,7 +63,7 @@ class Member : public Group<Member> {
 class Second : public Group<Second> {
  public:
   void call() {
-    const std::lock_guard lock(group_record->mutex);
+    const std::lock_guard lock(oracle);
     ++group_record->n_made;
   }
 };

@@ -31,7 +31,6 @@ struct Records {
   std::uint64_t seed = 0;
   int n_first = 0, n_rounds = 0;
   double create_chance = 0, destroy_chance = 0, move_chance = 0, late_chance = 0;
-  std::mutex mutex{};
   std::vector<std::set<int>> given{};  // by round
   std::map<int, int> ended{};          // index -> round in which it ended
   int n_created = 0;
@@ -39,7 +38,7 @@ struct Records {
   GroupProxy<Judge> judge{};
 
   void give(int round, int index) {
-    const std::lock_guard lock(mutex);
+    const std::lock_guard lock(oracle);
     expect(given[static_cast<std::size_t>(round)].insert(index).second, "element ", index,
            " contributes twice to ", round);
   }
@@ -129,7 +128,7 @@ class Judge : public Group<Judge> {
 
  private:
   static std::set<int> take(int round) {
-    const std::lock_guard lock(records->mutex);
+    const std::lock_guard lock(oracle);
     ++records->n_results;
     const std::set<int>& given = records->given[static_cast<std::size_t>(round)];
     for (int i = 0; i < records->n_first; ++i) {
@@ -155,10 +154,7 @@ void RoundElement::run_round(int round) {
   if (index().x != 0 && created_ && random.chance(records->destroy_chance)) {
     const bool gives = random.chance(0.5);
     if (gives) give(round);
-    {
-      const std::lock_guard lock(records->mutex);
-      records->ended[index().x] = gives ? round + 1 : round;
-    }
+    locked([&] { records->ended[index().x] = gives ? round + 1 : round; });
     destroy();
     return;
   }
@@ -177,10 +173,7 @@ void RoundElement::run_round(int round) {
 
 void RoundElement::create_child(int round) {
   int child = 0;
-  {
-    const std::lock_guard lock(records->mutex);
-    child = records->n_first + records->n_created++;
-  }
+  locked([&] { child = records->n_first + records->n_created++; });
   const Creation creation{round, index().x};
   if (records->draws(round, index().x, 1).chance(0.5)) {
     array()[{child}].send_or_create_here<&RoundElement::create>(creation);

@@ -39,13 +39,12 @@ struct ScanRecord {
   double move_chance = 0, create_chance = 0, end_chance = 0;
   std::atomic<std::int32_t> n_indices{0};
   std::atomic<int> n_given{0};  // contributions of a step, in this process
-  std::mutex mutex{};
   std::vector<List> results{};  // inclusive: the last one is the element's own contribution
 };
 ScanRecord* scan_record = nullptr;
 
 void note(List result) {
-  const std::lock_guard lock(scan_record->mutex);
+  const std::lock_guard lock(oracle);
   scan_record->results.push_back(std::move(result));
 }
 
@@ -58,7 +57,7 @@ class Scanner : public Chare<Scanner, Index1> {
  public:
   Task run(Step step) {
     const int me = index().x;
-    const bool mortal = me % 3 != 0;
+    const bool may_end = me % 3 != 0;
     Random random(
         mix(scan_record->seed ^ mix(static_cast<std::uint64_t>(step.number * 1000 + me))));
     if (random.chance(scan_record->create_chance)) array()[{scan_record->n_indices++}].insert();
@@ -71,8 +70,8 @@ class Scanner : public Chare<Scanner, Index1> {
       Random kind(mix(scan_record->seed + static_cast<std::uint64_t>(step.number * 100 + scan)));
       const bool one_by_one = kind.chance(0.3);
       if (kind.chance(0.5)) {
-        const auto target = mortal || random.chance(0.3) ? array()[{0}].target<&Scanner::placed>()
-                                                         : self().target<&Scanner::placed>();
+        const auto target = may_end || random.chance(0.3) ? array()[{0}].target<&Scanner::placed>()
+                                                          : self().target<&Scanner::placed>();
         if (one_by_one) {
           contribute(inclusive_scan(in_order(Join())), List{mine}, target);
         } else {
@@ -100,7 +99,7 @@ class Scanner : public Chare<Scanner, Index1> {
       note(std::move(result));
     }
     firsts_.clear();
-    if (mortal && random.chance(scan_record->end_chance)) destroy();
+    if (may_end && random.chance(scan_record->end_chance)) destroy();
   }
   void placed(List result) { note(std::move(result)); }
 

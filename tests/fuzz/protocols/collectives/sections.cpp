@@ -33,7 +33,6 @@ struct SectionState {
 struct SectionRecord {
   std::uint64_t seed = 0;
   double move_chance = 0, late_chance = 0, end_chance = 0;
-  std::mutex mutex{};
   std::vector<SectionState> sections{};
   std::map<int, std::map<int, int>> ended{};  // index -> section -> multicasts met
   std::map<int, int> n_messages{};            // index -> how many it gets at the start
@@ -53,7 +52,7 @@ class SectionMember : public Chare<SectionMember, Index1> {
     const int me = index().x;
     const int place = next_[call.number]++;
     {
-      const std::lock_guard lock(section_record->mutex);
+      const std::lock_guard lock(oracle);
       SectionState& of = section_record->sections[static_cast<std::size_t>(call.number)];
       // The first member that gets so far says which is the next.
       const int round = of.order.emplace(place, call.round).first->second;
@@ -100,7 +99,7 @@ class SectionMember : public Chare<SectionMember, Index1> {
   void move(Random& random) { migrate_to(any_pe(random)); }
   void end(Random& random) {
     if (index().x == 0 || n_late_ != 0 || !random.chance(section_record->end_chance)) return;
-    const std::lock_guard lock(section_record->mutex);
+    const std::lock_guard lock(oracle);
     // Messages to it would be dead letters.
     const auto expected = section_record->n_messages.find(index().x);
     if (expected != section_record->n_messages.end() && n_begun_ != expected->second) return;
@@ -134,7 +133,7 @@ class Caller : public Group<Caller> {
     Part& part = parts_.at(result.number);
     SectionState& of = section_record->sections[static_cast<std::size_t>(result.number)];
     {
-      const std::lock_guard lock(section_record->mutex);
+      const std::lock_guard lock(oracle);
       const int round = result.items.front().nth;  // results may arrive in any order
       expect(of.results.insert(round).second, "section ", result.number, ": a second result ",
              round);
@@ -183,7 +182,7 @@ struct Append {
 void SectionMember::give(const Call& call) {
   const int nth = given_[call.number]++;
   {
-    const std::lock_guard lock(section_record->mutex);
+    const std::lock_guard lock(oracle);
     auto& given = section_record->sections[static_cast<std::size_t>(call.number)].given[nth];
     expect(given.insert(index().x).second, "section ", call.number, ": element ", index().x,
            " contributes twice to ", nth);

@@ -17,7 +17,6 @@ struct SectionEndRecord {
   std::uint64_t seed = 0;
   int n_elements = 0, n_rounds = 0;
   double move_chance = 0, end_chance = 0;
-  std::mutex mutex{};
   std::map<int, std::map<int, int>> order{};          // turn -> place -> round
   std::map<int, std::map<int, std::set<int>>> met{};  // turn -> round -> indices
 };
@@ -37,7 +36,7 @@ class EndingMember : public Chare<EndingMember, Index1> {
     const int me = index().x;
     const int place = next_[multicast.turn]++;
     {
-      const std::lock_guard lock(section_end_record->mutex);
+      const std::lock_guard lock(oracle);
       const int round =
           section_end_record->order[multicast.turn].emplace(place, multicast.round).first->second;
       expect(round == multicast.round, "turn ", multicast.turn, ": element ", me,
@@ -63,7 +62,7 @@ class EndingMember : public Chare<EndingMember, Index1> {
 class ResultTaker : public Group<ResultTaker> {
  public:
   void result(std::vector<std::pair<Index1, std::int32_t>> items) {
-    const std::lock_guard lock(section_end_record->mutex);
+    const std::lock_guard lock(oracle);
     expect(items.size() == static_cast<std::size_t>(section_end_record->n_elements), "a result of ",
            items.size(), " members, of ", section_end_record->n_elements);
     std::set<std::int32_t> nth;

@@ -11,7 +11,6 @@ namespace {
 struct Places {
   std::uint64_t seed = 0;
   int n_elements = 0;
-  std::mutex mutex{};
   std::map<int, PeId> wanted{};  // where each element is to be
   std::map<int, PeId> seen{};
 };
@@ -23,10 +22,7 @@ class Mover : public Chare<Mover, Index1> {
   void go(int round) {
     Random random(mix(places->seed ^ static_cast<std::uint64_t>(round * 4096 + index().x)));
     const PeId to = any_pe(random);
-    {
-      const std::lock_guard lock(places->mutex);
-      places->wanted[index().x] = to;
-    }
+    locked([&] { places->wanted[index().x] = to; });
     switch (random.below(3)) {
       case 0:
         migrate_to(to);
@@ -46,7 +42,7 @@ class Mover : public Chare<Mover, Index1> {
 };
 
 void check_places() {
-  const std::lock_guard lock(places->mutex);
+  const std::lock_guard lock(oracle);
   for (const auto& [index, pe] : places->wanted) {
     const auto at = places->seen.find(index);
     expect(at != places->seen.end() && at->second == pe, "element ", index, " was sent to ", pe,
@@ -62,7 +58,7 @@ class Watcher : public Group<Watcher> {
   void look(ArrayProxy<Mover> array) {
     for (int i = 0; i < places->n_elements; ++i) {
       if (array.here().find({i}) == nullptr) continue;
-      const std::lock_guard lock(places->mutex);
+      const std::lock_guard lock(oracle);
       expect(places->seen.emplace(i, pe()).second, "two of ", i);
     }
   }

@@ -11,24 +11,23 @@ namespace {
 struct EpochRecord {
   int n_elements = 0;
   double move_chance = 0;
-  std::mutex mutex{};
   std::vector<int> due{};     // by epoch: begun and not done
   std::vector<int> parent{};  // by epoch
   int n_returned = 0;
 
   int open(int outer) {
-    const std::lock_guard lock(mutex);
+    const std::lock_guard lock(oracle);
     due.push_back(0);
     parent.push_back(outer);
     return static_cast<int>(due.size()) - 1;
   }
   void add(int epoch, int n) {
-    const std::lock_guard lock(mutex);
+    const std::lock_guard lock(oracle);
     for (; epoch >= 0; epoch = parent[static_cast<std::size_t>(epoch)])
       due[static_cast<std::size_t>(epoch)] += n;
   }
   void returned(int epoch) {
-    const std::lock_guard lock(mutex);
+    const std::lock_guard lock(oracle);
     ++n_returned;
     const int left = due[static_cast<std::size_t>(epoch)];
     expect(left == 0, "epoch ", epoch, " returned with ", left, " things to do");

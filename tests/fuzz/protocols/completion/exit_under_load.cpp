@@ -11,7 +11,6 @@ namespace {
 struct ExitRecord {
   int n_elements = 0;
   double exit_chance = 0;
-  std::mutex mutex{};
   int greatest_code = -1;
   std::vector<char> exited{};  // by PE
   std::atomic<int> n_alive{0};
@@ -19,12 +18,12 @@ struct ExitRecord {
 
   /// The program runs on a PE.
   void runs(PeId pe) {
-    const std::lock_guard lock(mutex);
+    const std::lock_guard lock(oracle);
     expect(!exited[static_cast<std::size_t>(pe.value)], "code runs after exit() on ", pe);
   }
   void exit_here(PeId pe, int code) {
     {
-      const std::lock_guard lock(mutex);
+      const std::lock_guard lock(oracle);
       greatest_code = std::max(greatest_code, code);
       exited[static_cast<std::size_t>(pe.value)] = 1;
     }

@@ -16,7 +16,6 @@ namespace {
 struct Lives {
   std::uint64_t seed = 0;
   double create_chance = 0, move_chance = 0;
-  std::mutex mutex{};
   std::map<std::pair<int, int>, int> phases_run{};
   std::int64_t n_contributed = 0, n_collected = 0;
 
@@ -67,7 +66,7 @@ class Life : public Chare<Life, Index2> {
 class Collector : public Group<Collector> {
  public:
   void collected(std::int64_t n) {
-    const std::lock_guard lock(lives_of_case->mutex);
+    const std::lock_guard lock(oracle);
     lives_of_case->n_collected += n;
   }
 };
@@ -79,7 +78,7 @@ void Life::live() {
   const int path = index().y;
   const int phase = phase_++;
   {
-    const std::lock_guard lock(l.mutex);
+    const std::lock_guard lock(oracle);
     ++l.phases_run[{root, path}];
     ++l.n_contributed;
   }

@@ -18,7 +18,6 @@ struct Phases {
   int n_phases = 1, n_first = 1;
   double create_chance = 0, destroy_chance = 0;
   bool rotates = false;
-  std::mutex mutex{};
   PhasesOf lived{};
 
   [[nodiscard]] bool draw(std::int32_t element, std::int32_t phase, double chance) const {
@@ -61,10 +60,7 @@ void EpochElement::live(std::int32_t phase) {
   if (phase < first_phase_) return;
   Phases& phases = *phases_of_case;
   const std::int32_t me = index().x;
-  {
-    const std::lock_guard lock(phases.mutex);
-    phases.lived[me].push_back(phase);
-  }
+  locked([&] { phases.lived[me].push_back(phase); });
   if (phases.rotates && was_on_.value >= 0)
     expect(tess::my_pe().value == (was_on_.value + 1) % tess::n_pes(), element_text(*this),
            " was on ", was_on_, " before the round, and is on ", tess::my_pe());

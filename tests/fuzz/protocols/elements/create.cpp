@@ -9,13 +9,12 @@ namespace {
 
 /// Counts deliveries by token, and lives by index.
 struct Deliveries {
-  std::mutex mutex;
   std::vector<int> delivered;  // by token
   std::vector<int> lives;      // by number of the index
   std::vector<int> alive;
 
   void count(std::vector<int>& of, int number) {
-    const std::lock_guard lock(mutex);
+    const std::lock_guard lock(oracle);
     ++of.at(static_cast<std::size_t>(number));
   }
   void check_each_once() {
@@ -27,7 +26,7 @@ struct Deliveries {
     }
   }
 };
-Deliveries* oracle = nullptr;
+Deliveries* deliveries = nullptr;
 
 struct Part {
   std::string name;
@@ -61,11 +60,11 @@ class Demanded : public Chare<Demanded<Index>, Index> {
 
   void count(Token token) {
     begin(token);
-    oracle->count(oracle->delivered, token.token);
+    deliveries->count(deliveries->delivered, token.token);
     Random random(mix(static_cast<std::uint64_t>(token.token) ^ 0x1234));
     if (random.chance(0.2)) move(random);
   }
-  void appear() { oracle->count(oracle->alive, number_); }
+  void appear() { deliveries->count(deliveries->alive, number_); }
 
   void serialize(auto& ar) { ar(number_); }
 
@@ -73,7 +72,7 @@ class Demanded : public Chare<Demanded<Index>, Index> {
   void begin(Token token) {
     if (number_ < 0) {
       number_ = token.index;
-      oracle->count(oracle->lives, number_);
+      deliveries->count(deliveries->lives, number_);
     }
     expect(number_ == token.index, "a message to ", token.index, " met ", number_);
   }
@@ -170,7 +169,7 @@ template <class Index>
 class Scene {
  public:
   explicit Scene(Case& test) : test_(test) {
-    oracle = &deliveries_;
+    deliveries = &deliveries_;
     const bool full = test.seed % 100 == 0 && test.on != On::threads;
     burst_.n_indices = full ? 1000 : test.draw(1, 60);
     burst_.seed = test.random();

@@ -11,7 +11,6 @@ namespace {
 struct LivesRecord {
   std::uint64_t seed = 0;
   int n_pes = 0;
-  std::mutex mutex{};
   std::vector<int> delivered{};  // by token
   std::vector<int> alive{};      // by index
   std::vector<int> found{};
@@ -22,7 +21,7 @@ struct LivesRecord {
 
   /// True if all messages of the agents have been delivered or counted.
   bool is_settled() {
-    const std::lock_guard lock(mutex);
+    const std::lock_guard lock(oracle);
     return n_agents_done == n_pes &&
            n_sent == n_ended + std::accumulate(delivered.begin(), delivered.end(), 0) +
                          static_cast<int>(std::accumulate(dead_letters.begin(), dead_letters.end(),
@@ -45,7 +44,7 @@ class Target : public Chare<Target<Mode>, Index2> {
   Target(const Target&) = delete;
   Target& operator=(const Target&) = delete;
   ~Target() override {
-    const std::lock_guard lock(lives_record->mutex);
+    const std::lock_guard lock(oracle);
     --lives_record->alive[at()];
     if (ended_) ++lives_record->n_ended;
   }
@@ -60,11 +59,11 @@ class Target : public Chare<Target<Mode>, Index2> {
     Random random(mix(static_cast<std::uint64_t>(token) ^ lives_record->seed));
     if (random.chance(0.3)) this->migrate_to(any_pe(random));
     ++n_taken_;
-    const std::lock_guard lock(lives_record->mutex);
+    const std::lock_guard lock(oracle);
     ++lives_record->delivered[static_cast<std::size_t>(token)];
   }
   void appear() {
-    const std::lock_guard lock(lives_record->mutex);
+    const std::lock_guard lock(oracle);
     ++lives_record->found[at()];
   }
 
@@ -73,7 +72,7 @@ class Target : public Chare<Target<Mode>, Index2> {
  private:
   [[nodiscard]] std::size_t at() const { return static_cast<std::size_t>(this->index().x); }
   void begin() {
-    const std::lock_guard lock(lives_record->mutex);
+    const std::lock_guard lock(oracle);
     expect(++lives_record->alive[at()] == 1, "index ", at(), " has two elements");
   }
 
@@ -118,7 +117,7 @@ class Agent : public Group<Agent<Mode>> {
         count_destruction();
     }
     if (orders.n_steps == 0) {
-      const std::lock_guard lock(lives_record->mutex);
+      const std::lock_guard lock(oracle);
       ++lives_record->n_agents_done;
       return;
     }
@@ -135,20 +134,20 @@ class Agent : public Group<Agent<Mode>> {
     const std::int32_t n_pes = tess::n_pes();
     for (int i = 0; i < n_indices; ++i)
       if (i % n_pes == this->pe().value) array[{i, 1}].insert_if_absent(i);
-    const std::lock_guard lock(lives_record->mutex);
+    const std::lock_guard lock(oracle);
     lives_record->dead_letters[static_cast<std::size_t>(this->pe().value)] =
         statistics().dead_letters;
   }
 
  private:
   static int token() {
-    const std::lock_guard lock(lives_record->mutex);
+    const std::lock_guard lock(oracle);
     ++lives_record->n_sent;
     lives_record->delivered.push_back(0);
     return static_cast<int>(lives_record->delivered.size()) - 1;
   }
   static void count_destruction() {
-    const std::lock_guard lock(lives_record->mutex);
+    const std::lock_guard lock(oracle);
     ++lives_record->n_sent;
   }
 };

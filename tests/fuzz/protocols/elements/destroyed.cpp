@@ -15,35 +15,34 @@ struct EndsRecord {
   std::uint64_t seed = 0;
   double end_chance = 0;  // a message destroys its array
   int n_indices = 1;
-  std::mutex mutex{};
   std::vector<int> delivered{};          // by token
   int n_broadcasts = 0;                  // one that is lost counts as a dead letter
   std::map<CollectionId, int> alive{};   // elements by array
   std::map<CollectionId, int> n_made{};  // inserted elements by array
   std::map<CollectionId, bool> over{};   // nothing more may be delivered
-  std::set<CollectionId> reduces{};      // the result of a meeting is not known yet
+  std::set<CollectionId> reduces{};      // the result of a reduction is not known yet
   std::set<CollectionId> periodic{};     // balanced so: its elements must not call at_sync()
   std::map<PeId, std::size_t> n_collections{};
 
   int token() {
-    const std::lock_guard lock(mutex);
+    const std::lock_guard lock(oracle);
     delivered.push_back(0);
     return static_cast<int>(delivered.size()) - 1;
   }
   void deliver(CollectionId array, int token) {
-    const std::lock_guard lock(mutex);
+    const std::lock_guard lock(oracle);
     expect(!over[array], "a message is delivered after the end of its array");
     ++delivered[static_cast<std::size_t>(token)];
   }
   int n_alive() {
-    const std::lock_guard lock(mutex);
+    const std::lock_guard lock(oracle);
     int n = 0;
     for (const auto& [array, alive_there] : alive) n += alive_there;
     return n;
   }
   /// Each PE knows no collection but the operators.
   bool all_forgotten() {
-    const std::lock_guard lock(mutex);
+    const std::lock_guard lock(oracle);
     for (const auto& [pe, n] : n_collections)
       if (n != 1) return false;
     return true;
@@ -78,7 +77,7 @@ class EndingTarget : public Chare<EndingTarget, Index1> {
   void give(GroupProxy<Operator> operators);
   void sync() {
     {
-      const std::lock_guard lock(ends_record->mutex);
+      const std::lock_guard lock(oracle);
       if (ends_record->periodic.contains(array().id())) return;
     }
     if (!waits_) at_sync();
@@ -90,7 +89,7 @@ class EndingTarget : public Chare<EndingTarget, Index1> {
 
  private:
   void count(int n) const {
-    const std::lock_guard lock(ends_record->mutex);
+    const std::lock_guard lock(oracle);
     ends_record->alive[array().id()] += n;
   }
 
@@ -101,7 +100,7 @@ class EndingTarget : public Chare<EndingTarget, Index1> {
 /// On each PE: the operations on the arrays from outside.
 class Operator : public Group<Operator> {
  public:
-  void flood(ArrayProxy<EndingTarget> targets, Chain chain);
+  void send_chains(ArrayProxy<EndingTarget> targets, Chain chain);
   void end(ArrayProxy<EndingTarget> targets, int n_hops) {
     if (n_hops == 0) {
       targets.destroy();
@@ -115,14 +114,14 @@ class Operator : public Group<Operator> {
     if (n_hops != 0) group()[next].send<&Operator::pass>(n_hops - 1);
   }
   void met(std::uint64_t array) {
-    const std::lock_guard lock(ends_record->mutex);
+    const std::lock_guard lock(oracle);
     ends_record->reduces.erase(CollectionId{array});
   }
   void check_end(ArrayProxy<EndingTarget> targets) {
     expect(targets.ended(), "the epoch of the end is done, but ", pe(), " still has the array");
   }
   void count_collections() {
-    const std::lock_guard lock(ends_record->mutex);
+    const std::lock_guard lock(oracle);
     ends_record->n_collections[pe()] = tess::n_collections();
   }
 };
@@ -140,10 +139,7 @@ void send_chain(const ArrayProxy<EndingTarget>& targets, Chain chain, Random& ra
       break;
     case 2: {
       int made = 0;
-      {
-        const std::lock_guard lock(ends_record->mutex);
-        made = ends_record->n_made[targets.id()]++;
-      }
+      locked([&] { made = ends_record->n_made[targets.id()]++; });
       const PeId where = any_pe(random);
       targets[{1000 + made}].insert_on(where, chain);
       break;
@@ -159,7 +155,7 @@ void send_chain(const ArrayProxy<EndingTarget>& targets, Chain chain, Random& ra
 /// One at a time: elements are created meanwhile.
 void start_reduction(const ArrayProxy<EndingTarget>& targets, GroupProxy<Operator> operators) {
   {
-    const std::lock_guard lock(ends_record->mutex);
+    const std::lock_guard lock(oracle);
     if (!ends_record->reduces.insert(targets.id()).second) return;
     ++ends_record->n_broadcasts;
   }
@@ -199,7 +195,7 @@ void EndingTarget::give(GroupProxy<Operator> operators) {
   contribute(max, array().id().value, operators[PeId{0}].target<&Operator::met>());
 }
 
-void Operator::flood(ArrayProxy<EndingTarget> targets, Chain chain) {
+void Operator::send_chains(ArrayProxy<EndingTarget> targets, Chain chain) {
   Random random(mix(static_cast<std::uint64_t>(chain.token * 64 + pe().value)));
   const auto n = random.below(8);
   for (std::uint64_t i = 0; i < n; ++i) send_chain(targets, chain, random);
@@ -231,7 +227,7 @@ bool balance(const ArrayProxy<EndingTarget>& targets, Random& random) {
       return false;
   }
   if (options.when == BalanceWhen::periodic) {
-    const std::lock_guard lock(ends_record->mutex);
+    const std::lock_guard lock(oracle);
     ends_record->periodic.insert(targets.id());
   }
   start_balancing(targets, options);
@@ -249,7 +245,7 @@ Task live_and_end(GroupProxy<Operator> operators, std::uint64_t seed) {
         tess::create<EndingTarget>(random.chance(0.7) ? range(ends_record->n_indices) : sparse);
     is_balanced = balance(targets, random);
   };
-  const auto flood = [&] { operators.broadcast<&Operator::flood>(targets, chain); };
+  const auto send_chains = [&] { operators.broadcast<&Operator::send_chains>(targets, chain); };
   const auto end = [&] { targets.destroy(); };
   const auto end_elsewhere = [&] {
     operators[other].send<&Operator::end>(targets, chain.token % 4);
@@ -259,14 +255,14 @@ Task live_and_end(GroupProxy<Operator> operators, std::uint64_t seed) {
     case 0:  // all in one epoch: nothing is left when it is done
       co_await epoch([&] {
         make();
-        flood();
+        send_chains();
         end_elsewhere();
       });
       break;
     case 1:  // twice
       make();
       co_await epoch([&] {
-        flood();
+        send_chains();
         end_elsewhere();
         end();
       });
@@ -277,15 +273,15 @@ Task live_and_end(GroupProxy<Operator> operators, std::uint64_t seed) {
         end();
       });
       break;
-    default:  // in mid flood
+    default:  // while chains run
       make();
-      flood();
+      send_chains();
       co_await epoch(end);
       operators.broadcast<&Operator::check_end>(targets);
       co_return;
   }
   operators.broadcast<&Operator::check_end>(targets);
-  const std::lock_guard lock(ends_record->mutex);
+  const std::lock_guard lock(oracle);
   ends_record->over[targets.id()] = true;
   // A balancer's migrations belong to no epoch of the user: elements may arrive, and end, later.
   expect(is_balanced || ends_record->alive[targets.id()] == 0, ends_record->alive[targets.id()],

@@ -7,7 +7,6 @@ namespace tess::fuzz {
 namespace {
 
 struct VisitsRecord {
-  std::mutex mutex{};
   std::vector<int> delivered{};
   int n_finished = 0;
 };
@@ -24,7 +23,7 @@ class Visitor : public Chare<Visitor, Index3> {
     for (std::size_t pe = 0; pe < n_pes; ++pe)
       if (!seen_[pe]) left.push_back(PeId{static_cast<std::int32_t>(pe)});
     if (left.empty()) {
-      const std::lock_guard lock(visits_record->mutex);
+      const std::lock_guard lock(oracle);
       ++visits_record->n_finished;
       return;
     }
@@ -33,7 +32,7 @@ class Visitor : public Chare<Visitor, Index3> {
     array()[index()].send<&Visitor::visit>(n_stops + 1);
   }
   void note(int token) {
-    const std::lock_guard lock(visits_record->mutex);
+    const std::lock_guard lock(oracle);
     ++visits_record->delivered[static_cast<std::size_t>(token)];
   }
   void serialize(auto& ar) { ar(seen_); }

@@ -17,7 +17,7 @@ namespace {
 /// What the seed says; the same on all processes.
 struct WaitDraws {
   std::uint64_t seed = 0;
-  int n_hosts = 0, n_leavers = 0, n_rounds = 0;
+  int n_partners = 0, n_leavers = 0, n_rounds = 0;
   double move_chance = 0;
 
   [[nodiscard]] Random draws(int round, int index) const {
@@ -26,7 +26,7 @@ struct WaitDraws {
   [[nodiscard]] std::uint64_t text(int round, int number) const {
     return mix(seed + mix(static_cast<std::uint64_t>(round * 1000 + number)));
   }
-  [[nodiscard]] int n_elements() const { return n_hosts + n_leavers; }
+  [[nodiscard]] int n_elements() const { return n_partners + n_leavers; }
   /// True if a leaver gets a note that moves it, about when it leaves.
   [[nodiscard]] bool moves_meanwhile(int round, int leaver) const {
     return draws(round, 500 + leaver).chance(move_chance);
@@ -38,7 +38,7 @@ struct Note {
   std::int32_t round = 0;
   std::uint64_t text = 0;
 };
-/// A note that a leaver asks a host for.
+/// A note that a leaver asks a partner for.
 struct Request {
   std::int32_t leaver = 0;
   Note note;
@@ -79,7 +79,7 @@ class WaitingElement : public Chare<WaitingElement, Index1> {
     return mix(question + static_cast<std::uint64_t>(index().x));
   }
 
-  // Of hosts.
+  // Of partners.
 
   void write(Request request) {
     array()[{request.leaver}].send<&WaitingElement::receive>(request.note);
@@ -121,11 +121,11 @@ class WaitingElement : public Chare<WaitingElement, Index1> {
       const Request request{index().x, {turn.round, random()}};
       want += request.note.text;
       if (end == 1 && n == 0) {
-        host(random).send<&WaitingElement::write_after_end>(request);
+        partner(random).send<&WaitingElement::write_after_end>(request);
       } else if (random.chance(0.5)) {
-        host(random).send<&WaitingElement::write_after_reply>(request);
+        partner(random).send<&WaitingElement::write_after_reply>(request);
       } else {
-        host(random).send<&WaitingElement::write>(request);
+        partner(random).send<&WaitingElement::write>(request);
       }
     }
     if (random.chance(wait_draws->move_chance))
@@ -149,7 +149,7 @@ class WaitingElement : public Chare<WaitingElement, Index1> {
           break;
         }
         case 2: {
-          const Time limit(static_cast<std::int64_t>(random.below(5000)));
+          const Time limit = any_time(random, 5000);
           const auto note = co_await when_any(notes_.take(turn.round), sleep(limit));
           if (note.index() == 1) break;
           got += std::get<0>(note).text;
@@ -157,15 +157,15 @@ class WaitingElement : public Chare<WaitingElement, Index1> {
           break;
         }
         case 3: {
-          const auto to = host(random);
+          const auto to = partner(random);
           const std::uint64_t question = random();
           const std::uint64_t reply = co_await to.ask<&WaitingElement::reply>(question);
           expect(reply == mix(question + static_cast<std::uint64_t>(to.index().x)),
-                 "a host has another reply");
+                 "a partner has another reply");
           break;
         }
         default:
-          co_await epoch([&] { host(random).send<&WaitingElement::receive>(Note{}); });
+          co_await epoch([&] { partner(random).send<&WaitingElement::receive>(Note{}); });
       }
       if (end == 2) destroy();
     }
@@ -182,9 +182,9 @@ class WaitingElement : public Chare<WaitingElement, Index1> {
   void serialize(auto& ar) { ar(notes_); }
 
  private:
-  [[nodiscard]] bool is_leaver() const { return index().x >= wait_draws->n_hosts; }
-  [[nodiscard]] ElementProxy<WaitingElement> host(Random& random) const {
-    return array()[{draw(random, wait_draws->n_hosts)}];
+  [[nodiscard]] bool is_leaver() const { return index().x >= wait_draws->n_partners; }
+  [[nodiscard]] ElementProxy<WaitingElement> partner(Random& random) const {
+    return array()[{draw(random, wait_draws->n_partners)}];
   }
   void move(const Note& why) {
     Random random(mix(why.text + static_cast<std::uint64_t>(index().x)));
@@ -217,7 +217,7 @@ Task leave_and_insert() {
     co_await epoch([&] { turn.section = create_section(elements, members); });
     std::vector<Future<std::int32_t>> of_all, of_section;
     co_await epoch([&] {
-      for (int x = wait_draws->n_hosts; x < wait_draws->n_elements(); ++x)
+      for (int x = wait_draws->n_partners; x < wait_draws->n_elements(); ++x)
         if (wait_draws->moves_meanwhile(round, x))
           elements[{x}].send<&WaitingElement::receive_and_move>(
               Note{round, wait_draws->text(round, 200 + x)}, any_pe(random));
@@ -256,7 +256,7 @@ Task leave_and_insert() {
            round + 1, " rounds of ", wait_draws->n_leavers);
     co_await epoch([&] {
       turn.section.destroy();
-      for (int x = wait_draws->n_hosts; x < wait_draws->n_elements(); ++x)
+      for (int x = wait_draws->n_partners; x < wait_draws->n_elements(); ++x)
         elements[{x}].insert_on(any_pe(random));  // ends the run if the index is not free
     });
   }

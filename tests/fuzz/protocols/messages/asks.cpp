@@ -179,7 +179,7 @@ class Replier : public Chare<Replier, Index1> {
       is_dead = std::string(error.what()).find("was destroyed") != std::string::npos;
     }
     expect(is_dead != (answer == answer_of(question, to)) && (is_dead || !was_dead),
-           "an element is neither asked nor dead, or lives again");
+           "an element is neither asked nor destroyed, or is there again");
   }
   static std::uint64_t note(std::uint64_t question) {
     ++ask_record->n_asked;
@@ -190,9 +190,7 @@ class Replier : public Chare<Replier, Index1> {
     ++ask_record->n_served;
     ask_record->served += question >> 8U;
   }
-  static Time delay(Random& random) {
-    return Time(static_cast<std::int64_t>(random.below(ask_record->longest)));
-  }
+  static Time delay(Random& random) { return any_time(random, ask_record->longest); }
   static void check(std::uint64_t question, int to, std::uint64_t answer,
                     const std::string& refusal) {
     if (refuses(question)) {

@@ -1,4 +1,4 @@
-// All PEs flood one another with messages, some of them only when there is room. The memory for
+// All PEs send one another more messages than memory holds, some of them only when there is room. The memory for
 // messages between processes is drawn from the seed, down to one message. The oracle: every message
 // arrives; a process holds no more of one sender's messages than the budget allows; a producer that
 // waits for room has at most one more message waiting; epochs wait for messages that are held back.
@@ -15,11 +15,10 @@ struct FlowRecord {
   std::uint64_t seed = 0;
   std::uint64_t memory_bytes = 0;  // for messages between processes
   std::atomic<int> n_arrived{0};
-  std::mutex mutex{};
   std::vector<std::uint64_t> held{};  // bytes unpacked and not yet run: sender × process
 
   void holds(PeId sender, ProcessId process, std::uint64_t n_bytes, bool more) {
-    const std::lock_guard lock(mutex);
+    const std::lock_guard lock(oracle);
     const Machine& machine = tess::machine();
     held.resize(static_cast<std::size_t>(machine.n_pes() * machine.n_processes()));
     std::uint64_t& now =

@@ -9,7 +9,6 @@ namespace {
 struct Ring {
   int n_elements = 0, n_steps = 0;
   double move_chance = 0;
-  std::mutex mutex{};
   std::vector<std::uint64_t> result{};
 
   /// The next value of an element from its own and its neighbours' values.
@@ -43,7 +42,7 @@ class RingElement : public Chare<RingElement, Index1> {
   Task step(int step) {
     const int n = ring->n_elements, i = index().x;
     if (step == ring->n_steps) {
-      const std::lock_guard lock(ring->mutex);
+      const std::lock_guard lock(oracle);
       ring->result[static_cast<std::size_t>(i)] = value_;
       co_return;
     }

@@ -50,7 +50,7 @@ class TimerElement : public Chare<TimerElement, Index1> {
       const TimerTree tree{random(), energy};
       record_[0] += 1;
       record_[2] += tree.id >> 8U;
-      const Time delay(static_cast<std::int64_t>(random.below(timer_record->longest)));
+      const Time delay = any_time(random, timer_record->longest);
       const auto to = array()[{draw(random, timer_record->n_elements)}];
       if (random.chance(0.5)) {
         after(delay, to.target<&TimerElement::ran>(), tree);

@@ -89,7 +89,7 @@ class ValueElement : public Chare<ValueElement, Index1> {
   TaskOf<std::uint64_t> chain(std::uint64_t question, int depth) {
     Random random(mix(question + static_cast<std::uint64_t>(depth)));
     if (random.chance(value_draws->move_chance)) migrate_to(any_pe(random));  // once this is done
-    if (random.chance(0.3)) co_await sleep(Time(static_cast<std::int64_t>(random.below(3000))));
+    if (random.chance(0.3)) co_await sleep(any_time(random, 3000));
     if (depth == 0) {
       if (throws_on(question)) fail(ErrorCode::bad_value, "refused ", question);
       co_return value_of(index().x, question);
@@ -200,8 +200,7 @@ class ValueElement : public Chare<ValueElement, Index1> {
     const bool first = random.chance(0.3);
     if (first) insert_late();
     auto reply = work.late[name].ask<&InsertedLate::value>(question);
-    if (!first && random.chance(0.5))
-      co_await sleep(Time(static_cast<std::int64_t>(random.below(5000))));
+    if (!first && random.chance(0.5)) co_await sleep(any_time(random, 5000));
     if (!first) insert_late();
     const std::uint64_t value = co_await reply;
     expect(value == value_of(7, question ^ name), "another value of a late_element");
@@ -228,7 +227,7 @@ class ValueElement : public Chare<ValueElement, Index1> {
   Task ask_in_time(Random& random) {
     const std::uint64_t question = random() / 11 * 11 + 1;
     const int to = draw(random, value_draws->n_elements);
-    const Time limit(static_cast<std::int64_t>(random.below(20'000)));
+    const Time limit = any_time(random, 20'000);
     std::optional<std::uint64_t> value;
     try {
       value = co_await array()[{to}].ask<&ValueElement::chain>(question, 0).within(limit);
