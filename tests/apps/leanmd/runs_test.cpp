@@ -5,6 +5,7 @@
 #include "apps/leanmd/study.hpp"
 #include "tests/support/adversarial.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/run.hpp"
 
 using namespace leanmd;
 
@@ -93,12 +94,8 @@ TEST_CASE("a run that cannot continue says why, and ends early", "[leanmd]") {
 }
 
 TEST_CASE("extreme simulations run well or are refused", "[leanmd]") {
-  tess::SimulatedOptions machine;
-  machine.n_pes = 2;
-  tess::Setup setup;
-  setup.machine = tess::make_simulated_machine(machine);
   std::vector<StabilityRow> rows;
-  REQUIRE(tess::run(setup, [&]() -> tess::Task { return stability_report(rows); }) == 0);
+  REQUIRE(tests::run("pes=2", [&] { return stability_report(rows); }).exit_code == 0);
   CHECK(rows.size() >= 20);
   for (const StabilityRow& row : rows) {
     INFO(row.name << ": " << row.note << ", drift " << row.drift);
