@@ -16,6 +16,7 @@
 #include "runtime/machine/threads.hpp"
 #include "tests/m2m/non_conforming.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/run.hpp"
 #include "tests/support/scratch.hpp"
 #include "tests/support/shared_data.hpp"
 
@@ -140,11 +141,9 @@ Task message_of_place(const TetMesh* mesh, PlaceOptions options, std::string* me
 }
 
 std::string refusal(const TetMesh& mesh, std::int32_t n_pes, const PlaceOptions& options = {4}) {
-  SimulatedOptions machine;
-  machine.n_pes = n_pes;
-  Setup setup{make_simulated_machine(machine), {}};
   std::string message;
-  REQUIRE(run(setup, [&]() -> Task { return message_of_place(&mesh, options, &message); }) == 0);
+  const auto main = [&] { return message_of_place(&mesh, options, &message); };
+  REQUIRE(tests::run(text("pes=", n_pes), main).exit_code == 0);
   return message;
 }
 

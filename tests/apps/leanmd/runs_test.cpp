@@ -5,6 +5,7 @@
 #include "apps/leanmd/study.hpp"
 #include "tests/support/adversarial.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/run.hpp"
 
 using namespace leanmd;
 
@@ -93,12 +94,8 @@ TEST_CASE("a run that cannot continue says why, and ends early", "[leanmd]") {
 }
 
 TEST_CASE("extreme simulations run well or are refused", "[leanmd]") {
-  tess::SimulatedOptions machine;
-  machine.n_pes = 2;
-  tess::Setup setup;
-  setup.machine = tess::make_simulated_machine(machine);
   kit::Cases<> report;
-  REQUIRE(tess::run(setup, [&]() -> tess::Task { return stability_report(report); }) == 0);
+  REQUIRE(tests::run("pes=2", [&] { return stability_report(report); }).exit_code == 0);
   CHECK(report.rows().size() >= 20);
   CHECK(report.n_failed() == 0);
 }

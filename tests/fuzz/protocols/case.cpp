@@ -1,7 +1,7 @@
 #include "tests/fuzz/protocols/case.hpp"
 
 #include "runtime/machine/mpi.hpp"
-#include "tests/support/run.hpp"
+#include "runtime/machine/threads.hpp"
 
 #include <array>
 #include <cstdlib>
@@ -48,12 +48,15 @@ std::unique_ptr<Machine> make_job_machine(int pes_per_process) {
 
 Result Case::run_message(std::function<void()> main) const {
   if (on == On::simulated) return machine.run(std::move(main));
-  RuntimeOptions options;
-  options.seed = seed;
-  options.signals = on == On::job;
-  return tests::run_on(
-      on == On::job ? make_job_machine(machine.per_process) : make_threads_machine(machine.pes),
-      std::move(main), std::move(options));
+  Setup setup;
+  setup.machine =
+      on == On::job ? make_job_machine(machine.per_process) : make_threads_machine(machine.pes);
+  setup.options.seed = seed;
+  setup.options.signals = on == On::job;
+  Result result;
+  setup.options.report = [&result](const std::string& line) { result.report.push_back(line); };
+  result.exit_code = run_on(setup, std::move(main));
+  return result;
 }
 
 void add_failure(std::string failure) {
