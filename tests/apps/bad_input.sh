@@ -203,7 +203,7 @@ refuses "--latency-ns: Value -1 not in range" "${crowd[@]}" --latency-ns=-1
 refuses "--out $scratch/missing/x.svg: cannot be written" "${crowd[@]}" --out "$scratch/missing/x"
 
 refuses "^collide_scene: error: --json: needs an INPUT" "$bin/collide_scene" --stability --json "$scratch/never.json"
-refuses "^particles: error: --steps: needs a SCENE" "$bin/particles" --stability --steps 5
+refuses "^particles: error: --steps 5 does not work with --stability" "$bin/particles" --stability --steps 5
 refuses "^collide_scene: error: voxel grid: coordinate" "$bin/collide_scene" boxes:100 --pes 2 --voxel-size 1e-30
 
 scaling=("$bin/m2m_scaling" --pes 1)
