@@ -153,9 +153,8 @@ refuses "BACKGROUND kuhn:16 is no ladder" "${overset[@]}" kuhn:16 --study h
 refuses "BACKGROUND kuhn:16,8 is no ladder" "${overset[@]}" kuhn:16,8 ball --study h
 refuses "BACKGROUND kuhn:8,15 is no ladder" "${overset[@]}" kuhn:8,15 ball --study h
 refuses "BACKGROUND kuhn:8,16 does not work with --study wall" "$bin/overset" kuhn:8,16 ball --study wall
-refuses "--field does not work with --study wall" "$bin/overset" --field sin --study wall
-
-refuses "--json .* does not work with --study h" "${overset[@]}" --study h
+refuses "--field sin does not work with --study wall" "$bin/overset" --field sin --study wall
+refuses "--wall body does not work with --study h" "${overset[@]}" --study h --wall body
 refuses "--plot .* does not work with --study wall" "$bin/overset" --study wall --plot "$scratch"
 mkdir "$scratch/meshes" && "$bin/m2m_transfer" kuhn:2 kuhn:4 --out "$scratch/meshes/background.exo" >"$scratch/out"
 refuses "--plot .* would overwrite" "$bin/overset" "$scratch/meshes/background.exo" ball:2 --plot "$scratch/meshes"
