@@ -1,11 +1,11 @@
-# Writes bench's build.hpp: the preset and the commit that was built. Run at each build; the file
+# Writes build.hpp of apps/kit: the version, the preset and the commit that are built. Run at each build; the file
 # changes only when they do.
 execute_process(COMMAND git -C "${SOURCE}" describe --always --dirty --exclude=*
   OUTPUT_VARIABLE commit OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
 if(NOT commit)
   set(commit "unknown")
 endif()
-set(text "#pragma once\n\nnamespace bench {\ninline constexpr const char* build_preset = \"${PRESET}\";\ninline constexpr const char* build_commit = \"${commit}\";\n}  // namespace bench\n")
+set(text "#pragma once\n\nnamespace kit {\ninline constexpr const char* version_of_build = \"${VERSION}\";\ninline constexpr const char* preset_of_build = \"${PRESET}\";\ninline constexpr const char* commit_of_build = \"${commit}\";\n}  // namespace kit\n")
 if(EXISTS "${OUT}")
   file(READ "${OUT}" before)
 endif()

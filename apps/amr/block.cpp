@@ -1,6 +1,6 @@
 #include "apps/amr/block.hpp"
 
-#include "apps/charge.hpp"
+#include "apps/kit/charge.hpp"
 
 #include <chrono>
 
@@ -44,7 +44,7 @@ tess::Task Block::advance(std::int32_t first, std::int32_t n) {
         patch_.set_halo(halo.face, halo.values);
     }
     patch_.compute_flows(axis);
-    apps::charge(per_cell, static_cast<std::size_t>(problem_.cells_per_block()));
+    kit::charge(per_cell, static_cast<std::size_t>(problem_.cells_per_block()));
     for (const Face face : faces)
       if (around_.side(face) < 0) send_flows(sweep, face);
     for (; n_flows > 0; --n_flows) {

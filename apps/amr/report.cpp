@@ -1,90 +1,82 @@
 #include "apps/amr/report.hpp"
 
-#include <algorithm>
 #include <fmt/format.h>
 
 namespace amr {
 namespace {
 
+using R = const Row&;
+using kit::Json;
+
 /// "2-4": the levels that the tree may have.
-std::string levels(const Problem& problem) {
-  return problem.least_level == problem.most_level
-             ? std::to_string(problem.most_level)
-             : fmt::format("{}-{}", problem.least_level, problem.most_level);
+Json levels(R row) {
+  const Problem& p = row.settings.problem;
+  return p.least_level == p.most_level ? std::to_string(p.most_level)
+                                       : fmt::format("{}-{}", p.least_level, p.most_level);
 }
+Json l1(R row) {
+  return row.outcome.l1();
+}
+Json seconds(R row) {
+  return row.outcome.seconds;
+}
+std::int64_t mass_change(const Outcome& outcome) {
+  return outcome.end.norms.mass - outcome.mass_at_start;
+}
+
+constexpr kit::Column<Row> columns[] = {
+    {"order", "order", "5", [](R r) -> Json { return r.settings.problem.order; }},
+    {"", "levels", "6", levels},
+    {"least_level", "", nullptr, [](R r) -> Json { return r.settings.problem.least_level; }},
+    {"max_level", "", nullptr, [](R r) -> Json { return r.settings.problem.most_level; }},
+    {"cells", "", nullptr, [](R r) -> Json { return r.settings.problem.n_cells; }},
+    {"cfl", "cfl", "5.3g", [](R r) -> Json { return r.settings.problem.cfl; }},
+    {"time", "", nullptr, [](R r) -> Json { return r.settings.problem.end; }},
+    {"steps", "steps", "6", [](R r) -> Json { return r.settings.problem.n_steps; }},
+    {"blocks", "", nullptr, [](R r) -> Json { return r.outcome.end.n_blocks; }},
+    {"most_blocks", "blocks", "6", [](R r) -> Json { return r.outcome.most_blocks; }},
+    {"created", "created", "8", [](R r) -> Json { return r.outcome.n_created; }},
+    {"destroyed", "destroyed", "9", [](R r) -> Json { return r.outcome.n_destroyed; }},
+    {"moved", "", nullptr, [](R r) -> Json { return r.outcome.n_moved; }},
+    {"of_level", "", nullptr, [](R r) -> Json { return r.outcome.end.of_level; }},
+    {"seconds", "seconds", "9.4f", seconds},
+    {"cell_steps", "", nullptr, [](R r) -> Json { return r.outcome.cell_steps; }},
+    {"l1", "L1", "10.3e", l1},
+    {"l2", "L2", "10.3e", [](R r) -> Json { return r.outcome.l2(); }},
+    {"linf", "max", "10.3e", [](R r) -> Json { return r.outcome.end.norms.linf; }},
+    {"largest", "", nullptr, [](R r) -> Json { return r.outcome.end.norms.largest; }},
+    {"least", "", nullptr, [](R r) -> Json { return r.outcome.end.norms.least; }},
+    {"mass_quanta", "", nullptr, [](R r) -> Json { return r.outcome.end.norms.mass; }},
+    {"mass_change_quanta", "mass change", "12", [](R r) -> Json { return mass_change(r.outcome); }},
+    {"", "ns per cell", "10.1f",
+     [](R r)
+         -> Json { return 1e9 * r.outcome.seconds / static_cast<double>(r.outcome.cell_steps); }},
+    {"result_hash", "", nullptr, [](R r) -> Json { return kit::hex(r.outcome.end.norms.hash); }}};
 
 }  // namespace
 
-std::string head() {
-  return fmt::format(
-      "{:>5} {:>6} {:>5} {:>6} {:>6} {:>8} {:>9} {:>9} {:>10} {:>10} {:>10} {:>12} {:>10}\n",
-      "order", "levels", "cfl", "steps", "blocks", "created", "destroyed", "seconds", "L1", "L2",
-      "max", "mass change", "ns per cell");
-}
-
-std::string line(const Row& row) {
-  const Problem& problem = row.settings.problem;
-  const Outcome& o = row.outcome;
-  return fmt::format(
-      "{:>5} {:>6} {:>5.3g} {:>6} {:>6} {:>8} {:>9} {:>9.4f} {:>10.3e} {:>10.3e} {:>10.3e} {:>12} "
-      "{:>10.1f}\n",
-      problem.order, levels(problem), problem.cfl, problem.n_steps, o.most_blocks, o.n_created,
-      o.n_destroyed, o.seconds, o.l1(), o.l2(), o.end.norms.linf,
-      o.end.norms.mass - o.mass_at_start, 1e9 * o.seconds / static_cast<double>(o.cell_steps));
+const kit::Rows<Row>& report() {
+  static const kit::Rows<Row> rows(columns);
+  return rows;
 }
 
 std::string fault(const Outcome& outcome) {
-  const std::int64_t change = outcome.end.norms.mass - outcome.mass_at_start;
-  if (change == 0) return "";
-  return fmt::format("the mass changed by {} of {} quanta", change, outcome.mass_at_start);
+  if (mass_change(outcome) == 0) return "";
+  return fmt::format("the mass changed by {} of {} quanta", mass_change(outcome),
+                     outcome.mass_at_start);
 }
 
-plot::Json json_of(const std::vector<Row>& rows) {
-  plot::Json all = plot::Json::array();
-  for (const auto& [settings, o] : rows) {
-    const Problem& p = settings.problem;
-    all.push_back({{"order", p.order},
-                   {"least_level", p.least_level},
-                   {"max_level", p.most_level},
-                   {"cells", p.n_cells},
-                   {"cfl", p.cfl},
-                   {"time", p.end},
-                   {"steps", p.n_steps},
-                   {"blocks", o.end.n_blocks},
-                   {"most_blocks", o.most_blocks},
-                   {"created", o.n_created},
-                   {"destroyed", o.n_destroyed},
-                   {"moved", o.n_moved},
-                   {"of_level", o.end.of_level},
-                   {"seconds", o.seconds},
-                   {"cell_steps", o.cell_steps},
-                   {"l1", o.l1()},
-                   {"l2", o.l2()},
-                   {"linf", o.end.norms.linf},
-                   {"largest", o.end.norms.largest},
-                   {"least", o.end.norms.least},
-                   {"mass_quanta", o.end.norms.mass},
-                   {"mass_change_quanta", o.end.norms.mass - o.mass_at_start},
-                   {"result_hash", fmt::format("{:016x}", o.end.norms.hash)}});
-  }
-  return all;
-}
-
-plot::Chart chart_of(const std::vector<Row>& rows) {
-  plot::Chart chart{.title = "error against run time, from the coarsest to the finest tree",
-                    .x_label = "seconds",
-                    .y_label = "L1 error",
-                    .x_log = true,
-                    .y_log = true};
-  const std::int32_t coarsest = rows.front().settings.problem.least_level;
+kit::Chart chart_of(const std::vector<Row>& rows) {
+  kit::Chart chart{.title = "error against run time, from the coarsest to the finest tree",
+                   .x_label = "seconds",
+                   .y_label = "L1 error",
+                   .x_log = true,
+                   .y_log = true};
   for (const Row& row : rows) {
     const Problem& p = row.settings.problem;
-    const std::string name =
-        fmt::format("order {}{}", p.order, p.least_level > coarsest ? ", uniform" : "");
-    const auto same = std::ranges::find(chart.series, name, &plot::Series::name);
-    plot::Series& series =
-        same != chart.series.end() ? *same : chart.series.emplace_back(plot::Series{.name = name});
-    series.points.push_back({row.outcome.seconds, row.outcome.l1()});
+    const bool uniform = p.least_level > rows.front().settings.problem.least_level;
+    kit::add_point(chart, fmt::format("order {}{}", p.order, uniform ? ", uniform" : ""),
+                   seconds(row), l1(row));
   }
   return chart;
 }

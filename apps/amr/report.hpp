@@ -1,9 +1,8 @@
-// What amr prints and writes.
+// What amr prints and writes of its runs.
 #pragma once
 
 #include "apps/amr/simulate.hpp"
-#include "apps/plot/chart.hpp"
-#include "apps/plot/json.hpp"
+#include "apps/kit/rows.hpp"
 
 #include <string>
 #include <vector>
@@ -15,13 +14,10 @@ struct Row {
   Outcome outcome;
 };
 
-[[nodiscard]] std::string head();
-[[nodiscard]] std::string line(const Row& row);
+[[nodiscard]] const kit::Rows<Row>& report();
 /// Empty if the mass is what it was, to the quantum.
 [[nodiscard]] std::string fault(const Outcome& outcome);
-
-[[nodiscard]] plot::Json json_of(const std::vector<Row>& rows);
 /// Error against run time, a line per order; and uniform trees of order 2.
-[[nodiscard]] plot::Chart chart_of(const std::vector<Row>& rows);
+[[nodiscard]] kit::Chart chart_of(const std::vector<Row>& rows);
 
 }  // namespace amr

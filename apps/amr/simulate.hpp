@@ -2,7 +2,7 @@
 #pragma once
 
 #include "apps/amr/block.hpp"
-#include "apps/checkpoints.hpp"
+#include "apps/kit/checkpoints.hpp"
 #include "runtime/balance_options.hpp"
 
 #include <functional>
@@ -14,7 +14,7 @@ struct Settings {
   Problem problem;
   std::int32_t change_every = 4;  ///< steps between two changes of the tree
   std::optional<tess::BalanceOptions> balance;
-  apps::Checkpoints checkpoints;
+  kit::Checkpoints checkpoints;
 };
 
 struct Outcome {

@@ -14,7 +14,7 @@
 #include "apps/bench/collide/chare_rows.hpp"
 #include "apps/bench/collide/conversion_rows.hpp"
 #include "apps/bench/collide/one_core.hpp"
-#include "apps/plot/write_file.hpp"
+#include "apps/kit/write_file.hpp"
 #include "runtime/command_line.hpp"
 
 #include <algorithm>
@@ -78,7 +78,7 @@ int main(int argc, char** argv) {
     }
     if (options.quick && !repeat.is_given()) options.repeat = 1;
     for (const std::string& name : options.names) bench::require_known(name);
-    plot::require_writable("--json", json);
+    kit::require_writable("--json", json);
 
     bench::Output output(options, "one core");
     output.header();
@@ -90,7 +90,7 @@ int main(int argc, char** argv) {
         bench::growth_rows(output);
     }
     bench::chare_rows(output);
-    if (!json.empty()) plot::write_file(json, output.json());
+    if (!json.empty()) kit::write_file(json, output.json());
     return 0;
   });
 }

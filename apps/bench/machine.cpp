@@ -3,7 +3,7 @@
 //
 //     bench_machine               pool, one way between two PEs of a process, small posts
 //     mpirun -n 2 bench_machine   one way between two ranks, and plain MPI in the same run
-#include "apps/median.hpp"
+#include "apps/kit/median.hpp"
 #include "runtime/base/pool.hpp"
 #include "runtime/core/check.hpp"
 #include "runtime/machine/mpi.hpp"
@@ -28,7 +28,7 @@ double nanoseconds(Clock::duration span) {
 
 void report(const char* what, const std::vector<double>& ns) {
   const auto [least, greatest] = std::minmax_element(ns.begin(), ns.end());
-  fmt::print("{:<48} {:9.1f} ns   ({:.1f} to {:.1f}, {} runs)\n", what, apps::median(ns), *least,
+  fmt::print("{:<48} {:9.1f} ns   ({:.1f} to {:.1f}, {} runs)\n", what, kit::median(ns), *least,
              *greatest, ns.size());
 }
 

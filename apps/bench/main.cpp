@@ -5,8 +5,8 @@
 //     bench --pes 1;  bench --pes 2;  mpirun -n 2 bench --pes 1;  bench message one_way --pes 2
 #include "apps/bench/calibrate/calibrate.hpp"
 #include "apps/bench/shapes/shapes.hpp"
-#include "apps/plot/file_names.hpp"
-#include "apps/plot/write_file.hpp"
+#include "apps/kit/file_names.hpp"
+#include "apps/kit/write_file.hpp"
 #include "runtime/command_line.hpp"
 
 #include <algorithm>
@@ -100,8 +100,8 @@ int main(int argc, char** argv) {
     if (options.quick && !repeat.is_given()) options.repeat = 1;
     if (!calibrated.empty())
       line.refuse_beside("--calibrate " + calibrated, {"NAME", "--repeat", "--list", "--json"});
-    plot::require_writable("--json", options.json);
-    plot::FileNames names;
+    kit::require_writable("--json", options.json);
+    kit::FileNames names;
     names.writes("--trace", setup.options.trace);
     names.writes("--json", options.json);
     names.writes("--calibrate", calibrated);
@@ -109,7 +109,7 @@ int main(int argc, char** argv) {
     bench::Bench bench(options, command_line, *setup.machine);
     if (!calibrated.empty()) {
       bench::require_calibration(calibrated, *setup.machine);
-      plot::require_writable("--calibrate", calibrated);
+      kit::require_writable("--calibrate", calibrated);
       return bench::calibrate(bench, calibrated);
     }
     bench.choose(bench::chosen(bench, options.names));
@@ -124,7 +124,7 @@ int main(int argc, char** argv) {
       if (const int code = shape.run(bench); code != 0) return code;
     }
     if (speaks && !options.json.empty())
-      plot::write_file(options.json, bench::json_text(bench.rows(), bench.origin()));
+      kit::write_file(options.json, bench::json_text(bench.rows(), bench.origin()));
     return 0;
   });
 }

@@ -1,8 +1,9 @@
 #include "apps/bench/report.hpp"
 
-#include "apps/bench/build.hpp"
-#include "apps/median.hpp"
+#include "apps/kit/median.hpp"
+#include "apps/kit/version.hpp"
 #include "runtime/core/escape.hpp"
+#include "runtime/here.hpp"
 #include "runtime/run.hpp"
 #include "runtime/scheduler/pe.hpp"
 
@@ -26,7 +27,7 @@ double Stopwatch::nanoseconds() const {
 }
 
 double Samples::median() const {
-  return apps::median(values_);
+  return kit::median(values_);
 }
 double Samples::least() const {
   return *std::min_element(values_.begin(), values_.end());
@@ -55,7 +56,7 @@ std::string csv_line(const Row& row, const Origin& common) {
       row.limit == 0 ? "," : fmt::format("{},{:.3f}", shown(row.limit), row.median / row.limit);
   return fmt::format("{},{},{},{},{:.2f},{},{},{},\"{}\",{},{}\n", row.name, shown(row.median),
                      row.unit, shown(row.least), row.spread, limit, origin.pes, origin.ranks,
-                     origin.machine, build_preset, build_commit);
+                     origin.machine, kit::build_preset(), kit::build_commit());
 }
 
 std::string json_text(const std::vector<Row>& rows, const Origin& common) {
@@ -71,8 +72,8 @@ std::string json_text(const std::vector<Row>& rows, const Origin& common) {
         "\"commit\": {}}}",
         &row == rows.data() ? "" : ",", tess::json_string(row.name), row.median,
         tess::json_string(row.unit), row.least, row.spread, limit, origin.pes, origin.ranks,
-        tess::json_string(origin.machine), tess::json_string(build_preset),
-        tess::json_string(build_commit));
+        tess::json_string(origin.machine), tess::json_string(kit::build_preset()),
+        tess::json_string(kit::build_commit()));
   }
   return out + "\n]}\n";
 }

@@ -1,7 +1,7 @@
 #include "apps/collide_scaling/calibrate.hpp"
 
 #include "apps/collide_scaling/pieces.hpp"
-#include "apps/median.hpp"
+#include "apps/kit/median.hpp"
 #include "collide/parallel/voxel_home.hpp"
 #include "runtime/machine/mpi.hpp"
 #include "runtime/machine/threads.hpp"
@@ -49,7 +49,7 @@ std::vector<double> measured(const std::vector<Case>& cases) {
       seconds[i].push_back(
           run_case(cases[i], tess::make_threads_machine(cases[i].n_pes)).step.seconds);
   std::vector<double> medians(cases.size());
-  std::ranges::transform(seconds, medians.begin(), apps::median);
+  std::ranges::transform(seconds, medians.begin(), kit::median);
   return medians;
 }
 

@@ -1,7 +1,7 @@
 #include "apps/collide_scaling/case.hpp"
 
 #include "apps/collide_scaling/pieces.hpp"
-#include "apps/median.hpp"
+#include "apps/kit/median.hpp"
 #include "collide/collider.hpp"
 #include "runtime/balance.hpp"
 #include "runtime/machine/simulated.hpp"
@@ -109,7 +109,7 @@ tess::Task run_steps(const Case& given, Row& row) {
   const auto median_of = [&](double StepTimes::*member) {
     std::vector<double> values;
     for (const StepTimes& step : steps) values.push_back(step.*member);
-    return apps::median(std::move(values));
+    return kit::median(std::move(values));
   };
   row.step = {median_of(&StepTimes::seconds), median_of(&StepTimes::first_hits),
               median_of(&StepTimes::last_hits), steps.back().n_pairs};

@@ -5,7 +5,7 @@
 //     collide_scaling --check              predicted and measured steps of 1 and 2 PEs only
 #include "apps/collide_scaling/calibrate.hpp"
 #include "apps/collide_scaling/report.hpp"
-#include "apps/plot/write_file.hpp"
+#include "apps/kit/write_file.hpp"
 #include "runtime/balance.hpp"
 #include "runtime/command_line.hpp"
 #include "runtime/core/error.hpp"
@@ -91,7 +91,7 @@ int study(int argc, char** argv) {
     tess::fail(tess::ErrorCode::bad_argument,
                "with mpirun only --check runs, on two processes: mpirun -n 2 ... --check");
   if (!out.empty())
-    for (const char* end : {".svg", ".csv"}) plot::require_writable("--out", out + end);
+    for (const char* end : {".svg", ".csv"}) kit::require_writable("--out", out + end);
   bool are_close = true;
   if (given.work == Work::model) {
     if (!given.is_strong) given.voxel_size = chosen_voxel_size(given);

@@ -1,6 +1,6 @@
 #include "apps/collide_scaling/report.hpp"
 
-#include "apps/plot/chart.hpp"
+#include "apps/kit/chart.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -55,7 +55,7 @@ std::string conclusion(const std::vector<Row>& rows, bool is_checked) {
 
 void draw(const std::string& prefix, const std::vector<Row>& rows) {
   const bool is_strong = rows.front().given.is_strong;
-  plot::Chart chart{
+  kit::Chart chart{
       .title = is_strong ? "a crowd on more and more PEs" : "as many triangles on each PE",
       .x_label = "PEs",
       .y_label = is_strong ? "ms per step" : "efficiency, %",
@@ -63,7 +63,7 @@ void draw(const std::string& prefix, const std::vector<Row>& rows) {
       .y_log = is_strong};
   for (const Row& row : rows) {
     const std::string& name = row.given.balance;
-    auto series = std::ranges::find(chart.series, name, &plot::Series::name);
+    auto series = std::ranges::find(chart.series, name, &kit::Series::name);
     if (series == chart.series.end()) {
       chart.series.push_back({.name = name});
       series = chart.series.end() - 1;
@@ -77,13 +77,13 @@ void draw(const std::string& prefix, const std::vector<Row>& rows) {
                                  ? "measured work and messages"
                                  : "modelled work and messages";
     const bool is_one = chart.series.size() == 1;
-    for (plot::Series& series : chart.series)
+    for (kit::Series& series : chart.series)
       series.name = is_one ? what : what + ", " + series.name;
     chart.series.push_back({.name = "Lawlor and Kalé 2002, 1500 PEs",
                             .points = {{1500, 60}},
-                            .style = plot::Style::points});
+                            .style = kit::Style::points});
   }
-  (void)plot::write_svg(prefix + ".svg", chart);
+  (void)kit::write_svg(prefix + ".svg", chart);
 }
 
 }  // namespace collide_scaling

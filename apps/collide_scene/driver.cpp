@@ -7,8 +7,8 @@
 #include "apps/collide_scene/run/parallel.hpp"
 #include "apps/collide_scene/run/serial.hpp"
 #include "apps/collide_scene/study/study.hpp"
-#include "apps/plot/write_file.hpp"
-#include "apps/progress.hpp"
+#include "apps/kit/progress.hpp"
+#include "apps/kit/write_file.hpp"
 
 #include <algorithm>
 
@@ -39,13 +39,13 @@ std::optional<double> false_positive_rate(const Problem& problem) {
   return 1 - static_cast<double>(last.n_pairs) / static_cast<double>(last.n_candidates);
 }
 
-void show(apps::Progress& progress, const char* phase, int part, int n_parts) {
+void show(kit::Progress& progress, const char* phase, int part, int n_parts) {
   progress.part(part, n_parts);
   progress.phase(phase);
 }
 
 /// What is done after the last step; the table is printed first.
-int finish(Problem& problem, apps::Progress& progress) {
+int finish(Problem& problem, kit::Progress& progress) {
   const Options& options = problem.report.options;
   RunResult& result = problem.report.result;
   std::ranges::sort(result.pairs);
@@ -53,7 +53,7 @@ int finish(Problem& problem, apps::Progress& progress) {
   problem.report.false_positive_rate = false_positive_rate(problem);
   progress.clear();
   tess::print(table(problem.report));
-  if (!options.json.empty()) plot::write_file(options.json, json(problem.report));
+  if (!options.json.empty()) kit::write_file(options.json, json(problem.report));
   if (!options.out.empty()) {
     show(progress, "writing the files of --out", 0, 0);
     write_files(options.out, problem.scene, result.pairs);
@@ -66,7 +66,7 @@ int finish(Problem& problem, apps::Progress& progress) {
   return agrees(rows) ? 0 : 1;
 }
 
-int run_serial(Problem& problem, apps::Progress& progress) {
+int run_serial(Problem& problem, kit::Progress& progress) {
   const Options& options = problem.report.options;
   RunResult& result = problem.report.result;
   for (int step = 0; step < options.steps; ++step) {
@@ -87,7 +87,7 @@ int run_serial(Problem& problem, apps::Progress& progress) {
   return finish(problem, progress);
 }
 
-tess::Task run_parallel(Problem& problem, apps::Progress& progress) {
+tess::Task run_parallel(Problem& problem, kit::Progress& progress) {
   const Options& options = problem.report.options;
   RunResult& result = problem.report.result;
   ParallelCollisions collisions(problem.scene, options.rules);
@@ -128,7 +128,7 @@ int drive(tess::Setup& setup, const Options& options, bool on_chares) {
   if (options.explain && speaks) tess::print(explanation(report));
   if (!speaks) scene = {};
   Problem problem{std::move(scene), motion, std::move(report)};
-  apps::Progress progress(speaks ? stderr : nullptr);
+  kit::Progress progress(speaks ? stderr : nullptr);
   if (!on_chares) return run_serial(problem, progress);
   return tess::run(setup, [&]() -> tess::Task { return run_parallel(problem, progress); });
 }

@@ -3,7 +3,7 @@
 #include "apps/collide_scene/driver.hpp"
 #include "apps/collide_scene/input/load.hpp"
 #include "apps/collide_scene/stability/report.hpp"
-#include "apps/plot/file_names.hpp"
+#include "apps/kit/file_names.hpp"
 #include "runtime/command_line.hpp"
 #include "runtime/runtime.hpp"
 
@@ -76,7 +76,7 @@ int run(tess::Setup& setup, int argc, char** argv, bool asked_for_pes) {
   if (options.rules.slack > 0 && options.repeat > 1)
     tess::fail(tess::ErrorCode::bad_argument,
                "--repeat: with --slack only the first of equal collisions searches; leave one out");
-  plot::FileNames names;
+  kit::FileNames names;
   for (const std::string& input : options.inputs) names.reads("INPUT", input);
   names.writes("--json", options.json);
   names.writes("--trace", setup.options.trace);

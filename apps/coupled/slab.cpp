@@ -1,6 +1,6 @@
 #include "apps/coupled/slab.hpp"
 
-#include "apps/charge.hpp"
+#include "apps/kit/charge.hpp"
 #include "runtime/core/hash.hpp"
 
 #include <algorithm>
@@ -95,7 +95,7 @@ void Slab::receive_plane(bool from_left, const std::vector<double>& values) {
 
 void Slab::step(const Step& by) {
   diffuse(by);
-  apps::charge(per_node, n_owned());
+  kit::charge(per_node, n_owned());
   if (box_.reaction.factor > 0) react(by);
 }
 
@@ -127,7 +127,7 @@ void Slab::react(const Step& by) {
     values_[node] =
         box_.reaction.step(values_[node], exact(p, by.time + by.dt), by.dt, n_iterations);
   }
-  apps::charge(per_iteration, n_iterations);
+  kit::charge(per_iteration, n_iterations);
 }
 
 void Slab::move_to(Point low) {
@@ -163,7 +163,7 @@ void Slab::received(CouplingId coupling) {
 void Slab::compare(double time, tess::Callback<Outcome> result) {
   Outcome mine{0, 0, n_taken_};
   for (std::size_t node = 0; node < n_owned(); ++node) {
-    apps::worsen(mine.error, std::abs(values_[node] - exact(points_[node], time)));
+    kit::worsen(mine.error, std::abs(values_[node] - exact(points_[node], time)));
     const std::pair<tess::m2m::GlobalId, double> whole{point_ids_[node], values_[node]};
     mine.hash += tess::hash_bytes(&whole, sizeof whole);
   }

@@ -8,7 +8,7 @@
 #pragma once
 
 #include "apps/coupled/reaction.hpp"
-#include "apps/worst.hpp"
+#include "apps/kit/worst.hpp"
 #include "m2m/coupling.hpp"
 #include "runtime/runtime.hpp"
 
@@ -56,7 +56,7 @@ struct Outcome {
 struct JoinOutcomes {
   Outcome operator()(const Outcome& a, const Outcome& b) const {
     Outcome both{a.error, a.hash + b.hash, a.n_taken + b.n_taken};
-    apps::worsen(both.error, b.error);
+    kit::worsen(both.error, b.error);
     return both;
   }
 };

@@ -1,6 +1,6 @@
 #include "apps/leanmd/compute.hpp"
 
-#include "apps/charge.hpp"
+#include "apps/kit/charge.hpp"
 
 #include <chrono>
 #include <utility>
@@ -33,10 +33,10 @@ void Compute::interact_if_complete() {
   const auto first = cells.front().of_atoms.view(), last = cells.back().of_atoms.view();
   if (cells.size() == 1) {
     law_.add(first, forces[0]);
-    apps::charge(per_pair, first.size() * first.size() / 2);
+    kit::charge(per_pair, first.size() * first.size() / 2);
   } else {
     law_.add(first, last, forces[0], forces[1]);
-    apps::charge(per_pair, first.size() * last.size());
+    kit::charge(per_pair, first.size() * last.size());
   }
   for (std::size_t c = 0; c < cells.size(); ++c)
     contribute(cells[c].section, AddForces{}, std::move(forces[c]), cells[c].forces);

@@ -1,7 +1,6 @@
 #include "apps/leanmd/report.hpp"
 
-#include "apps/plot/json.hpp"
-#include "runtime/here.hpp"
+#include "apps/kit/rows.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -77,29 +76,27 @@ std::string table(const Options& options, const Outcome& outcome) {
   return out;
 }
 
-std::string json(const Options& options, const Outcome& outcome) {
+kit::Json json_of(const Options& options, const Outcome& outcome) {
   const Problem& p = options.problem;
-  plot::Json rounds = plot::Json::array();
+  kit::Json rounds = kit::Json::array();
   for (const tess::balance::Round& round : outcome.rounds)
     rounds.push_back({{"moved", round.n_moved},
                       {"max_over_average", round.before},
                       {"predicted", round.predicted},
                       {"phase_seconds", round.phase_seconds},
                       {"round_seconds", round.round_seconds}});
-  plot::Json out{{"machine", tess::machine().describe()},
-                 {"atoms", outcome.n_atoms},
-                 {"cells", p.box.n_cells},
-                 {"steps", options.n_steps},
-                 {"dt", p.dt},
-                 {"cutoff", p.cutoff},
-                 {"seconds", outcome.seconds},
-                 {"energy", outcome.energy()},
-                 {"energy_drift", outcome.drift()},
-                 {"wrong_forces", nullptr},
-                 {"balance_rounds", std::move(rounds)},
-                 {"result_hash", fmt::format("{:016x}", outcome.hash)}};
-  if (outcome.wrong_forces >= 0) out["wrong_forces"] = outcome.wrong_forces;
-  return plot::json_text(out);
+  const std::int64_t wrong = outcome.wrong_forces;
+  return {{"atoms", outcome.n_atoms},
+          {"cells", p.box.n_cells},
+          {"steps", options.n_steps},
+          {"dt", p.dt},
+          {"cutoff", p.cutoff},
+          {"seconds", outcome.seconds},
+          {"energy", outcome.energy()},
+          {"energy_drift", outcome.drift()},
+          {"wrong_forces", wrong >= 0 ? kit::Json(wrong) : kit::Json()},
+          {"balance_rounds", std::move(rounds)},
+          {"result_hash", kit::hex(outcome.hash)}};
 }
 
 }  // namespace leanmd

@@ -1,6 +1,7 @@
 // What the program prints and writes about one simulation.
 #pragma once
 
+#include "apps/kit/json.hpp"
 #include "apps/leanmd/simulation.hpp"
 
 #include <string>
@@ -10,6 +11,6 @@ namespace leanmd {
 /// What this run does, step by step.
 [[nodiscard]] std::string explain(const Options& options, std::int64_t n_atoms);
 [[nodiscard]] std::string table(const Options& options, const Outcome& outcome);
-[[nodiscard]] std::string json(const Options& options, const Outcome& outcome);
+[[nodiscard]] kit::Json json_of(const Options& options, const Outcome& outcome);
 
 }  // namespace leanmd

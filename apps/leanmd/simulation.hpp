@@ -1,9 +1,9 @@
 // A simulation on the machine: makes the arrays, runs all steps, and compares what can be compared.
 #pragma once
 
-#include "apps/checkpoints.hpp"
+#include "apps/kit/checkpoints.hpp"
+#include "apps/kit/progress.hpp"
 #include "apps/leanmd/outcome.hpp"
-#include "apps/progress.hpp"
 
 #include <optional>
 
@@ -18,8 +18,8 @@ struct Options {
   /// Afterwards reverses all velocities and runs back: the atoms return to their start, bit for
   /// bit.
   bool reverse = false;
-  apps::Progress* progress = nullptr;
-  apps::Checkpoints checkpoints;
+  kit::Progress* progress = nullptr;
+  kit::Checkpoints checkpoints;
 };
 
 /// Called on PE 0. The outcome is the same on every machine and for any cells. A restart needs no

@@ -1,14 +1,25 @@
 #include "apps/leanmd/study.hpp"
 
-#include "apps/plot/chart.hpp"
-#include "apps/plot/fit.hpp"
-#include "apps/plot/json.hpp"
-#include "runtime/here.hpp"
-
 #include <cmath>
-#include <fmt/format.h>
 
 namespace leanmd {
+namespace {
+
+using R = const StudyRow&;
+using kit::Json;
+
+Json drift(R row) {
+  return row.error.empty() ? Json(row.drift) : Json();
+}
+
+constexpr kit::Column<StudyRow> columns[] = {{"dt", "dt", "10.4g", kit::of<&StudyRow::dt>},
+                                             {"steps", "steps", "7", kit::of<&StudyRow::n_steps>},
+                                             {"energy_drift", "energy drift", "13.3e", drift},
+                                             {"order", "order", "7.2f", kit::of<&StudyRow::order>},
+                                             {"seconds", "s", "11.4f", kit::of<&StudyRow::seconds>},
+                                             {"error", "", "<", kit::of<&StudyRow::error>}};
+
+}  // namespace
 
 tess::Task study(Options options, InitialState state, std::vector<StudyRow>& rows) {
   const double dt = options.problem.dt;
@@ -19,72 +30,43 @@ tess::Task study(Options options, InitialState state, std::vector<StudyRow>& row
     const Motion motion(options.problem.box.edge, options.problem.dt);
     Outcome outcome;
     co_await simulate(options, initial_atoms(state, motion), outcome);
-    StudyRow row{options.problem.dt, options.n_steps, outcome.drift(), outcome.seconds, 0,
-                 outcome.error,      outcome.is_wrong};
-    if (!rows.empty() && rows.back().error.empty() && row.drift > 0 && rows.back().drift > 0)
-      row.order = std::log(rows.back().drift / row.drift) / std::log(rows.back().dt / row.dt);
+    StudyRow row{.dt = options.problem.dt,
+                 .n_steps = options.n_steps,
+                 .drift = outcome.drift(),
+                 .seconds = outcome.seconds,
+                 .error = outcome.error,
+                 .is_wrong = outcome.is_wrong};
+    if (!rows.empty() && rows.back().error.empty())
+      row.order = kit::order_between({rows.back().dt, rows.back().drift}, {row.dt, row.drift});
     rows.push_back(row);
   }
 }
 
+const kit::Rows<StudyRow>& study_rows() {
+  static const kit::Rows<StudyRow> rows(columns);
+  return rows;
+}
+
 std::optional<double> fitted_order(const std::vector<StudyRow>& rows) {
-  std::vector<plot::Point> drifts;
+  return kit::fitted_order<StudyRow>(rows, kit::of<&StudyRow::dt>, drift);
+}
+
+kit::Chart study_chart(const std::vector<StudyRow>& rows) {
+  kit::Chart chart{.title = "velocity Verlet: error against run time",
+                   .x_label = "seconds",
+                   .y_label = "energy drift per atom",
+                   .x_log = true,
+                   .y_log = true};
   for (const StudyRow& row : rows)
-    if (row.error.empty()) drifts.push_back({row.dt, row.drift});
-  return plot::fitted_power(drifts);
-}
-
-std::string study_table(const std::vector<StudyRow>& rows) {
-  std::string out =
-      fmt::format("{:>10}{:>8}{:>14}{:>8}{:>12}\n", "dt", "steps", "energy drift", "order", "s");
-  for (const StudyRow& row : rows) {
-    if (!row.error.empty()) {
-      out += fmt::format("{:>10.4g}{:>8}  {}\n", row.dt, row.n_steps, row.error);
-      continue;
-    }
-    out += fmt::format("{:>10.4g}{:>8}{:>14.3e}{:>8}{:>12.4f}\n", row.dt, row.n_steps, row.drift,
-                       row.order == 0 ? "-" : fmt::format("{:.2f}", row.order), row.seconds);
-  }
-  const std::optional<double> order = fitted_order(rows);
-  return out + fmt::format("fitted order {}; drift: greatest change of the total energy per atom\n",
-                           order ? fmt::format("{:.2f}", *order) : "-");
-}
-
-std::string study_json(const std::vector<StudyRow>& rows) {
-  plot::Json list = plot::Json::array();
-  for (const StudyRow& row : rows) {
-    plot::Json one{{"dt", row.dt},
-                   {"steps", row.n_steps},
-                   {"energy_drift", row.drift},
-                   {"seconds", row.seconds}};
-    if (!row.error.empty()) one["error"] = row.error;
-    list.push_back(std::move(one));
-  }
-  plot::Json out{{"machine", tess::machine().describe()},
-                 {"fitted_order", nullptr},
-                 {"rows", std::move(list)}};
-  if (const std::optional<double> order = fitted_order(rows)) out["fitted_order"] = *order;
-  return plot::json_text(out);
-}
-
-void draw_study(const std::string& svg, const std::vector<StudyRow>& rows) {
-  plot::Chart chart{.title = "velocity Verlet: error against run time",
-                    .x_label = "seconds",
-                    .y_label = "energy drift per atom",
-                    .x_log = true,
-                    .y_log = true};
-  plot::Series drift{.name = "dt from left to right: shorter"};
-  for (const StudyRow& row : rows)
-    if (row.error.empty()) drift.points.push_back({row.seconds, row.drift});
-  chart.series = {std::move(drift)};
+    kit::add_point(chart, "dt from left to right: shorter", row.seconds, drift(row));
+  if (chart.series.empty()) return chart;
   // Twice the steps, a quarter of the error.
-  if (const std::vector<plot::Point>& points = chart.series.front().points; !points.empty()) {
-    const plot::Point first = points.front(), last = points.back();
-    chart.series.push_back({.name = "order 2",
-                            .points = {first, {last.x, first.y * std::pow(first.x / last.x, 2)}},
-                            .style = plot::Style::dashes});
-  }
-  (void)plot::write_svg(svg, chart);
+  const kit::Point first = chart.series.front().points.front();
+  const kit::Point last = chart.series.front().points.back();
+  chart.series.push_back({.name = "order 2",
+                          .points = {first, {last.x, first.y * std::pow(first.x / last.x, 2)}},
+                          .style = kit::Style::dashes});
+  return chart;
 }
 
 }  // namespace leanmd

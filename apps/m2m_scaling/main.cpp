@@ -2,10 +2,10 @@
 //
 //     m2m_scaling kuhn:80 kuhn:81 --pes 1,16,64,256
 //     m2m_scaling kuhn:200 kuhn:201 --pes 64,128,256,512,1024,2048 --out scaling
+#include "apps/kit/write_file.hpp"
 #include "apps/m2m_scaling/own_process.hpp"
 #include "apps/m2m_scaling/report.hpp"
 #include "apps/m2m_transfer/run/measure.hpp"
-#include "apps/plot/write_file.hpp"
 #include "m2m/transfer_kind.hpp"
 #include "runtime/command_line.hpp"
 #include "runtime/core/error.hpp"
@@ -29,7 +29,7 @@ bool has_values_of(const Row& a, const Row& b) {
 
 /// One run. Returns the exit code.
 int run_once(const Request& request, const tess::SimulatedOptions& machine, Row& row) {
-  apps::Progress progress(stderr);
+  kit::Progress progress(stderr);
   tess::Setup setup{tess::make_simulated_machine(machine), {}};
   setup.options.seed = machine.seed.value_or(1);
   setup.options.migration_chance = migration_chance(machine);
@@ -96,7 +96,7 @@ int study(int argc, char** argv) {
     tess::fail(tess::ErrorCode::bad_argument, "--sim ", sim,
                " names a number of PEs; give them with --pes 1,4,16");
   if (!out.empty())
-    for (const char* end : {".svg", ".csv"}) plot::require_writable("--out", out + end);
+    for (const char* end : {".svg", ".csv"}) kit::require_writable("--out", out + end);
   std::ranges::sort(pes);
   std::vector<Row> rows;
   for (const tess::SimulatedOptions& machine : machines_of(sim, pes)) {

@@ -1,6 +1,6 @@
 #include "apps/m2m_scaling/report.hpp"
 
-#include "apps/plot/chart.hpp"
+#include "apps/kit/chart.hpp"
 
 #include <fmt/format.h>
 #include <functional>
@@ -40,12 +40,12 @@ std::string line(const Row& row, const Row& first) {
 }
 
 void draw(const std::string& prefix, const std::string& title, const std::vector<Row>& rows) {
-  plot::Chart chart{
+  kit::Chart chart{
       .title = title, .x_label = "PEs", .y_label = "seconds", .x_log = true, .y_log = true};
   for (const Row& row : rows) chart.x_ticks.push_back(row.pes);
   const auto add = [&](const char* name, const std::function<double(const Row&)>& of,
-                       plot::Style style = plot::Style::lines_points) {
-    plot::Series series{.name = name, .style = style};
+                       kit::Style style = kit::Style::lines_points) {
+    kit::Series series{.name = name, .style = style};
     for (const Row& row : rows) series.points.push_back({static_cast<double>(row.pes), of(row)});
     chart.series.push_back(std::move(series));
   };
@@ -59,8 +59,8 @@ void draw(const std::string& prefix, const std::string& title, const std::vector
   add(
       "together, ideal",
       [&](const Row& r) { return distributed_seconds(first) * first.pes / r.pes; },
-      plot::Style::dashes);
-  (void)plot::write_svg(prefix + ".svg", chart);
+      kit::Style::dashes);
+  (void)kit::write_svg(prefix + ".svg", chart);
 }
 
 }  // namespace m2m_scaling

@@ -94,8 +94,8 @@ void refuse_contradictions(const DriverOptions& o, Mode mode) {
   }
 }
 
-plot::FileNames file_names(const DriverOptions& o, const std::string& trace) {
-  plot::FileNames names;
+kit::FileNames file_names(const DriverOptions& o, const std::string& trace) {
+  kit::FileNames names;
   for (const std::string& mesh : o.request.more) names.reads("a mesh", mesh);
   for (const std::string& mesh : expand(o.request.source)) names.reads("SOURCE", mesh);
   for (const std::string& mesh : expand(o.request.target)) names.reads("TARGET", mesh);

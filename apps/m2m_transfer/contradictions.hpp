@@ -1,8 +1,8 @@
 // Options that do not work together. None of them is passed over in silence.
 #pragma once
 
+#include "apps/kit/file_names.hpp"
 #include "apps/m2m_transfer/driver.hpp"
-#include "apps/plot/file_names.hpp"
 
 #include <string>
 
@@ -17,6 +17,6 @@ void refuse_contradictions(const DriverOptions& options, Mode mode);
 
 /// The files that the options name; `trace` is that of the runtime's option. Throws Error
 /// (bad_argument) with the first output whose path is that of an input or of another output.
-[[nodiscard]] plot::FileNames file_names(const DriverOptions& options, const std::string& trace);
+[[nodiscard]] kit::FileNames file_names(const DriverOptions& options, const std::string& trace);
 
 }  // namespace m2m_transfer

@@ -1,7 +1,7 @@
 #include "apps/m2m_transfer/drive_files.hpp"
 
+#include "apps/kit/write_file.hpp"
 #include "apps/m2m_transfer/file_fields.hpp"
-#include "apps/plot/write_file.hpp"
 
 namespace m2m_transfer {
 namespace {
@@ -30,11 +30,11 @@ bool moves_file_fields(const DriverOptions& options) {
   return is_for_files(request_of(options));
 }
 
-Task move_file_fields(const DriverOptions& options, apps::Progress& progress) {
-  plot::require_writable("--json", options.json);
+Task move_file_fields(const DriverOptions& options, kit::Progress& progress) {
+  kit::require_writable("--json", options.json);
   const FileFieldsRequest request = request_of(options);
   const FileFieldsReport report = co_await move_file_fields(request, progress);
-  if (!options.json.empty()) plot::write_file(options.json, json(report));
+  if (!options.json.empty()) kit::write_file(options.json, json(report));
   progress.clear();
   print(table(report));
 }

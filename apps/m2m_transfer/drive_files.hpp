@@ -1,8 +1,8 @@
 // The driver's part for fields and weights of files (file_fields.hpp): options in, reports out.
 #pragma once
 
+#include "apps/kit/progress.hpp"
 #include "apps/m2m_transfer/driver.hpp"
-#include "apps/progress.hpp"
 
 namespace m2m_transfer {
 
@@ -10,6 +10,6 @@ namespace m2m_transfer {
 [[nodiscard]] bool moves_file_fields(const DriverOptions& options);
 
 /// Moves them, prints the table, and writes what --out, --weights and --json name.
-Task move_file_fields(const DriverOptions& options, apps::Progress& progress);
+Task move_file_fields(const DriverOptions& options, kit::Progress& progress);
 
 }  // namespace m2m_transfer

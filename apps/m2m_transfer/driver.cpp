@@ -1,5 +1,6 @@
 #include "apps/m2m_transfer/driver.hpp"
 
+#include "apps/kit/write_file.hpp"
 #include "apps/m2m_transfer/contradictions.hpp"
 #include "apps/m2m_transfer/drive_files.hpp"
 #include "apps/m2m_transfer/output/drift.hpp"
@@ -13,7 +14,6 @@
 #include "apps/m2m_transfer/study/checks.hpp"
 #include "apps/m2m_transfer/study/steps.hpp"
 #include "apps/m2m_transfer/study/study.hpp"
-#include "apps/plot/write_file.hpp"
 #include "m2m/read_mesh.hpp"
 #include "runtime/command_line.hpp"
 #include "runtime/core/error.hpp"
@@ -26,7 +26,7 @@
 namespace m2m_transfer {
 namespace {
 
-TaskOf<Problem> read(const Request& request, apps::Progress& progress) {
+TaskOf<Problem> read(const Request& request, kit::Progress& progress) {
   progress.phase("reading");
   const Time start = now();
   Problem problem = co_await load(request);
@@ -71,24 +71,24 @@ std::vector<TransferKind> kinds_of(const DriverOptions& options) {
   return {all_transfer_kinds.begin(), all_transfer_kinds.end()};
 }
 
-Task drift_table(const DriverOptions& options, apps::Progress& progress) {
+Task drift_table(const DriverOptions& options, kit::Progress& progress) {
   Request request = single_request(options);
   const std::vector<std::int32_t> trips = parse_trips(options.round_trips);
   const std::vector<TransferKind> kinds = kinds_of(options);
   request.kind = name_of(kinds.front());
-  plot::require_writable("--json", options.json);
-  plot::make_folder("--plot", options.plot);
+  kit::require_writable("--json", options.json);
+  kit::make_folder("--plot", options.plot);
   Drift drift;
   co_await measure_drift(request, kinds, trips, progress, drift);
   progress.clear();
   print(table(drift));
   if (!options.plot.empty()) print(write(drift, options.plot));
-  if (!options.json.empty()) plot::write_file(options.json, json(drift));
+  if (!options.json.empty()) kit::write_file(options.json, json(drift));
 }
 
 /// Throws Error (bad_argument) if a mesh of the result, or a part of one, would replace a file of
 /// the run. Their names are known when the meshes are.
-void refuse_to_overwrite(plot::FileNames names, const std::string& out, const Problem& problem) {
+void refuse_to_overwrite(kit::FileNames names, const std::string& out, const Problem& problem) {
   for (std::size_t m = 0; m < problem.meshes.size() && !out.empty(); ++m) {
     if (!is_written(m, problem.pairs)) continue;
     const std::string path = path_of_result(out, m, problem.meshes.size(), problem.pairs);
@@ -99,13 +99,13 @@ void refuse_to_overwrite(plot::FileNames names, const std::string& out, const Pr
   }
 }
 
-Task transfer_once(const DriverOptions& options, const plot::FileNames& names,
-                   apps::Progress& progress) {
+Task transfer_once(const DriverOptions& options, const kit::FileNames& names,
+                   kit::Progress& progress) {
   const Request request = single_request(options);
-  plot::require_writable("--json", options.json);
-  plot::require_writable("--out", options.out);
+  kit::require_writable("--json", options.json);
+  kit::require_writable("--out", options.out);
   require_result_format(options.out);
-  plot::require_picture("--picture", options.picture);
+  kit::require_picture("--picture", options.picture);
   Problem problem = co_await read(request, progress);
   refuse_to_overwrite(names, options.out, problem);
   const bool in_parts = is_pvtu(options.out);
@@ -120,8 +120,8 @@ Task transfer_once(const DriverOptions& options, const plot::FileNames& names,
   co_await measure(problem, gauge, progress);
   progress.phase("writing");
   if (problem.collects) bring_targets(problem);
-  if (!options.json.empty()) plot::write_file(options.json, json(problem.reports));
-  if (!options.picture.empty()) plot::write_file(options.picture, picture(problem));
+  if (!options.json.empty()) kit::write_file(options.json, json(problem.reports));
+  if (!options.picture.empty()) kit::write_file(options.picture, picture(problem));
   if (writes_whole) write_meshes(options.out, problem);
   progress.clear();
   std::string text;
@@ -130,10 +130,10 @@ Task transfer_once(const DriverOptions& options, const plot::FileNames& names,
 }
 
 /// Every kind, one after the other, from the same meshes and fields.
-Task transfer_all_kinds(const DriverOptions& options, apps::Progress& progress) {
+Task transfer_all_kinds(const DriverOptions& options, kit::Progress& progress) {
   Request request = single_request(options);
   const std::vector<TransferKind> kinds = kinds_of(options);
-  plot::require_writable("--json", options.json);
+  kit::require_writable("--json", options.json);
   request.kind = name_of(kinds.front());
   const Problem read_once = co_await read(request, progress);
   const auto gauge = create_group<Gauge>();
@@ -150,13 +150,13 @@ Task transfer_all_kinds(const DriverOptions& options, apps::Progress& progress) 
     co_await measure(problem, gauge, progress);
     for (TransferReport& report : problem.reports) reports.push_back(std::move(report));
   }
-  if (!options.json.empty()) plot::write_file(options.json, json(reports));
+  if (!options.json.empty()) kit::write_file(options.json, json(reports));
   progress.clear();
   print(kinds_table(reports));
 }
 
-Task run_study(const DriverOptions& options, apps::Progress& progress, bool& failed) {
-  plot::require_writable("--json", options.json);
+Task run_study(const DriverOptions& options, kit::Progress& progress, bool& failed) {
+  kit::require_writable("--json", options.json);
   std::vector<std::string> kinds{options.request.kind};
   if (*options.study == "kind" || wants_all_kinds(options)) {
     kinds.clear();
@@ -164,7 +164,7 @@ Task run_study(const DriverOptions& options, apps::Progress& progress, bool& fai
   }
   std::vector<Request> requests = plan_study(options.request, options.policies, kinds);
   const std::string folder = options.plot.empty() ? "study" : options.plot;
-  plot::make_folder("--plot", folder);
+  kit::make_folder("--plot", folder);
   const auto gauge = create_group<Gauge>();
   std::vector<TransferReport> reports;
   for (Request& request : requests) {
@@ -187,18 +187,18 @@ Task run_study(const DriverOptions& options, apps::Progress& progress, bool& fai
   if (study.is_checked) rows = checks(study);
   if (!rows.empty()) print(table(rows));
   print(write(study, folder));
-  if (!options.json.empty()) plot::write_file(options.json, json(study));
+  if (!options.json.empty()) kit::write_file(options.json, json(study));
   failed = !all_ok(rows);
   if (failed) print(failures(rows));
 }
 
-Task run_steps_study(const DriverOptions& options, apps::Progress& progress, bool& failed) {
-  plot::require_writable("--json", options.json);
+Task run_steps_study(const DriverOptions& options, kit::Progress& progress, bool& failed) {
+  kit::require_writable("--json", options.json);
   Request request = options.request;
   request.policy = options.policies.front();
   const std::vector<Request> requests = plan_study(request, {request.policy}, {request.kind});
   const std::string folder = options.plot.empty() ? "study" : options.plot;
-  plot::make_folder("--plot", folder);
+  kit::make_folder("--plot", folder);
   std::vector<StepsRow> rows;
   for (const Request& one : requests) {
     Problem problem = co_await read(one, progress);
@@ -208,7 +208,7 @@ Task run_steps_study(const DriverOptions& options, apps::Progress& progress, boo
   print(table(rows));
   failed = !std::ranges::all_of(rows, &StepsRow::ok);
   print(write(rows, folder));
-  if (!options.json.empty()) plot::write_file(options.json, json(rows));
+  if (!options.json.empty()) kit::write_file(options.json, json(rows));
 }
 
 Mode mode_of(const DriverOptions& options) {
@@ -224,8 +224,8 @@ Mode mode_of(const DriverOptions& options) {
 }  // namespace
 
 int drive(Setup& setup, const DriverOptions& options) {
-  apps::Progress progress(setup.machine->process().value == 0 ? stderr : nullptr);
-  const plot::FileNames names = file_names(options, setup.options.trace);
+  kit::Progress progress(setup.machine->process().value == 0 ? stderr : nullptr);
+  const kit::FileNames names = file_names(options, setup.options.trace);
   bool failed = false;
   const int code = tess::run(setup, [&]() -> Task {
     const Mode mode = mode_of(options);

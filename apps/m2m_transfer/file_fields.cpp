@@ -1,12 +1,12 @@
 #include "apps/m2m_transfer/file_fields.hpp"
 
+#include "apps/kit/json.hpp"
+#include "apps/kit/write_file.hpp"
 #include "apps/m2m_transfer/input/lists.hpp"
 #include "apps/m2m_transfer/input/status_field.hpp"
 #include "apps/m2m_transfer/output/farthest.hpp"
 #include "apps/m2m_transfer/output/found.hpp"
 #include "apps/m2m_transfer/result_format.hpp"
-#include "apps/plot/json.hpp"
-#include "apps/plot/write_file.hpp"
 #include "m2m/cell_transfer.hpp"
 #include "m2m/count_nan.hpp"
 #include "m2m/coupling_weights.hpp"
@@ -273,8 +273,8 @@ void check_options(const FileFieldsRequest& request) {
     fail(ErrorCode::bad_argument,
          "--weights writes weights and --from-weights reads them; give one");
   if (!request.weights.empty()) require_weights(parse_transfer_kind(request.kind), request.clamp);
-  plot::require_writable("--weights", request.weights);
-  plot::require_writable("--out", request.out);
+  kit::require_writable("--weights", request.weights);
+  kit::require_writable("--out", request.out);
   require_result_format(request.out);
   require_names_differ(request.out, split_names(request.fields));
   if (is_pvtu(request.out))
@@ -321,7 +321,7 @@ bool is_for_files(const FileFieldsRequest& request) {
 }
 
 TaskOf<FileFieldsReport> move_file_fields(const FileFieldsRequest& request,
-                                          apps::Progress& progress) {
+                                          kit::Progress& progress) {
   check_options(request);
   FileFieldsReport report;
   progress.phase("reading");
@@ -421,7 +421,7 @@ std::string table(const FileFieldsReport& r) {
 }
 
 std::string json(const FileFieldsReport& r) {
-  plot::Json whole{{"source", r.source}, {"target", r.target}, {"fields", r.fields}};
+  kit::Json whole{{"source", r.source}, {"target", r.target}, {"fields", r.fields}};
   whole.update(json_of(r.source_elements, r.target_elements));
   if (r.searched)
     whole.update({{"inside", r.tally.counts[0]},
@@ -442,14 +442,14 @@ std::string json(const FileFieldsReport& r) {
     whole.update({{"cells_overcovered", r.cell_tally.n_overcovered},
                   {"cells_most_covered", r.cell_tally.most_covered}});
   if (r.n_weights > 0) whole["weights"] = r.n_weights;
-  whole["steps"] = plot::Json::array();
+  whole["steps"] = kit::Json::array();
   for (const MovedStep& step : r.steps)
     whole["steps"].push_back({{"step", step.step},
                               {"time", step.time},
                               {"nan_vertices", step.n_nan},
                               {"nan_cells", step.n_nan_cells},
                               {"result_hash", fmt::format("{:016x}", step.result_hash)}});
-  return plot::json_text(whole);
+  return kit::json_text(whole);
 }
 
 }  // namespace m2m_transfer

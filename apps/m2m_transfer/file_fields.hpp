@@ -4,9 +4,9 @@
 // application.
 #pragma once
 
+#include "apps/kit/progress.hpp"
 #include "apps/m2m_transfer/names.hpp"
 #include "apps/m2m_transfer/report.hpp"
-#include "apps/progress.hpp"
 #include "m2m/field.hpp"
 #include "m2m/tally.hpp"
 #include "m2m/worst_places.hpp"
@@ -63,7 +63,7 @@ struct FileFieldsReport {
 
 /// Throws Error with the option, file, field or step that is wrong, before any message is sent.
 TaskOf<FileFieldsReport> move_file_fields(const FileFieldsRequest& request,
-                                          apps::Progress& progress);
+                                          kit::Progress& progress);
 
 [[nodiscard]] std::string table(const FileFieldsReport& report);
 [[nodiscard]] std::string json(const FileFieldsReport& report);

@@ -1,11 +1,9 @@
 // nqueens: how many ways are there to put n queens on a board of n × n squares such that none
 // attacks another? A tree search in messages with priorities, checked against the known counts.
+#include "apps/kit/driver.hpp"
+#include "apps/kit/wrong_answer.hpp"
 #include "apps/nqueens/parts.hpp"
 #include "apps/nqueens/report.hpp"
-#include "apps/progress.hpp"
-#include "apps/row_files.hpp"
-#include "apps/wrong_answer.hpp"
-#include "runtime/command_line.hpp"
 #include "runtime/runtime.hpp"
 
 #include <algorithm>
@@ -20,14 +18,12 @@ struct Options {
   std::optional<std::uint64_t> expected;
   std::string form = "group", priority = "path";
   std::int32_t repeat = 1;
-  bool study = false;
-  apps::RowFiles files;
-  apps::Checkpoints checkpoints;
+  kit::Checkpoints checkpoints;
 };
 
 /// One problem, or with --study each grain in both forms; the first of a study is one task.
-std::vector<Problem> problems_of(const Options& options) {
-  if (!options.study) return {options.problem};
+std::vector<Problem> problems_of(const Options& options, bool study) {
+  if (!study) return {options.problem};
   std::vector<Problem> all;
   for (const Form form : {Form::group, Form::chares}) {
     Problem problem = options.problem;
@@ -44,12 +40,13 @@ std::uint64_t expected_of(const Options& options, const Row& row) {
   return options.expected.value_or(known_count(row.problem.n));
 }
 
-tess::Task measure(Options options) {
-  apps::Progress progress(stderr);
+tess::Task measure(Options options, kit::Driver& driver) {
+  kit::Progress& progress = driver.progress();
+  const bool study = driver.mode() == kit::Mode::study;
   progress.phase("searching");
-  const std::vector<Problem> problems = problems_of(options);
+  const std::vector<Problem> problems = problems_of(options, study);
   std::vector<Row> rows;
-  tess::print_text(tess::machine().describe() + "\n" + head());
+  tess::print_text(tess::machine().describe() + "\n" + report().head());
   for (const Problem& problem : problems) {
     progress.part(rows.size() + 1, problems.size());
     Row row{.problem = problem, .outcome = {}};
@@ -65,53 +62,57 @@ tess::Task measure(Options options) {
       if (wrong) break;  // it is not repeated away
     }
     rows.push_back(row);
-    if (options.study)
+    if (study)
       rows.back().efficiency = rows.front().outcome.seconds / (tess::n_pes() * row.outcome.seconds);
     progress.clear();
-    tess::print_text(line(rows.back()));
+    tess::print_text(report().line(rows.back()));
     if (const std::string why = fault(row, expected_of(options, row)); !why.empty()) {
-      apps::end_with("nqueens: wrong answer: " + why);
+      kit::end_with("nqueens: wrong answer: " + why);
       co_return;
     }
   }
-  options.files.write(json_of(rows), chart_of(rows));
+  driver.write(report().json(rows));
+  if (study) driver.draw(chart_of(rows));
 }
 
 int run(tess::Setup& setup, int argc, char** argv) {
   Options options;
   Problem& problem = options.problem;
-  tess::CommandLine line("Counts the solutions of the n queens problem by a search in messages.");
-  line.option("N", problem.n, "queens").between(1, most_queens);
-  line.option("--grain", options.grain,
-              "boards with at most so many rows left are searched serially (default: N - 4)")
-      .between(1, most_queens);
-  line.option("--form", options.form,
-              "group: tasks are messages to PEs; chares: each task is a chare created on demand")
-      .one_of({"group", "chares"});
-  line.option("--priority", options.priority,
+  using kit::Mode;
+  kit::Driver driver(setup,
+                     "Counts the solutions of the n queens problem by a search in messages.");
+  driver.option("N", problem.n, "queens").between(1, most_queens);
+  driver
+      .option("--priority", options.priority,
               "path: boards on the left first, so depth first; none: as they come, breadth first")
       .one_of({"path", "none"});
-  line.flag("--first", problem.first, "find the first solution only, in the order of columns");
-  line.option("--expect", options.expected,
-              "exit with 1 unless there are so many solutions (default: the known number)");
-  line.option("--repeat", options.repeat, "runs, of which the fastest counts").between(1, 1000);
-  line.flag("--study", options.study, "every grain in both forms: time, tasks, efficiency");
-  options.files.add_options(line);
-  options.checkpoints.add_options(line);
-  if (!line.parse(argc, argv)) return 0;
-  options.checkpoints.check(line, {"N", "--first"});
-  if (options.checkpoints.are_used() && (options.study || options.repeat > 1))
-    tess::fail(tess::ErrorCode::bad_argument,
-               "--checkpoint and --restart: not for --study and --repeat");
+  driver.option("--expect", options.expected,
+                "exit with 1 unless there are so many solutions (default: the known number)");
+  driver.repeat(options.repeat);
+  driver.json();
+  driver.in(Mode::run);  // a study tries all grains and both forms, and counts
+  driver
+      .option("--grain", options.grain,
+              "boards with at most so many rows left are searched serially (default: N - 4)")
+      .between(1, most_queens);
+  driver
+      .option("--form", options.form,
+              "group: tasks are messages to PEs; chares: each task is a chare created on demand")
+      .one_of({"group", "chares"});
+  driver.flag("--first", problem.first, "find the first solution only, in the order of columns");
+  options.checkpoints.add_options(driver);
+  driver.in(Mode::study);
+  driver.study("every grain in both forms: time, tasks, efficiency");
+  driver.picture("draw the rows");
+  if (!driver.parse(argc, argv)) return 0;
+  for (const char* option : {"--checkpoint", "--restart"}) driver.refuse_both(option, "--repeat");
+  options.checkpoints.check(driver.line(), {"N", "--first"});
   problem.prioritised = options.priority == "path";
   problem.form = options.form == "group" ? Form::group : Form::chares;
   problem.grain = options.grain.value_or(default_grain(problem.n));
-  if (!options.checkpoints.restarts()) check_grain(problem);  // else N is in the checkpoint
-  if (options.study)  // it tries all grains and both forms, and counts
-    line.refuse_beside("--study", {"--grain", "--form", "--first"});
+  if (!options.checkpoints.restarts()) check_grain(problem);  // otherwise N is in the checkpoint
   check_expected(problem, options.expected);
-  options.files.check(options.study, setup.options.trace);
-  return tess::run(setup, [&] { return measure(options); });
+  return tess::run(setup, [&] { return measure(options, driver); });
 }
 
 }  // namespace

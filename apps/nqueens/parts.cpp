@@ -15,7 +15,7 @@ struct State {
 }  // namespace
 
 tess::Task search_in_parts(Problem& problem, std::optional<std::int32_t> grain,
-                           std::optional<std::uint64_t> expected, apps::Checkpoints& checkpoints,
+                           std::optional<std::uint64_t> expected, kit::Checkpoints& checkpoints,
                            Outcome& outcome) {
   State state{problem.n, problem.first, 0, {}};
   std::int32_t n_parts = 0;

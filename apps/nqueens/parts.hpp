@@ -4,7 +4,7 @@
 // chare, only how many parts are done and what they gave.
 #pragma once
 
-#include "apps/checkpoints.hpp"
+#include "apps/kit/checkpoints.hpp"
 #include "apps/nqueens/search.hpp"
 
 #include <cstdint>
@@ -16,7 +16,7 @@ namespace nqueens {
 /// grain that is not given is the default for that n. Throws tess::Error if it, or the number of
 /// solutions that is expected, does not fit them.
 tess::Task search_in_parts(Problem& problem, std::optional<std::int32_t> grain,
-                           std::optional<std::uint64_t> expected, apps::Checkpoints& checkpoints,
+                           std::optional<std::uint64_t> expected, kit::Checkpoints& checkpoints,
                            Outcome& outcome);
 
 }  // namespace nqueens

@@ -7,29 +7,48 @@
 namespace nqueens {
 namespace {
 
+using R = const Row&;
+using kit::Json;
+
 const char* name_of(Form form) {
   return form == Form::group ? "group" : "chares";
 }
 
-}  // namespace
-
-std::string head() {
-  return fmt::format("{:>3} {:>6} {:>7} {:>9} {:>12} {:>12} {:>9} {:>9} {:>10} {:>10}\n", "n",
-                     "grain", "form", "priority", "solutions", "boards", "tasks", "dropped",
-                     "seconds", "efficiency");
+/// The number of solutions; null where the first was looked for.
+Json solutions(R row) {
+  return row.problem.first ? Json() : Json(row.outcome.count.n_solutions);
+}
+/// The first solution, "" for none; null where all were counted.
+Json first(R row) {
+  if (!row.problem.first) return {};
+  return row.outcome.found ? to_text(row.outcome.solution, row.problem.n) : "";
 }
 
-std::string line(const Row& row) {
-  const auto& [problem, outcome, efficiency] = row;
-  std::string text =
-      fmt::format("{:>3} {:>6} {:>7} {:>9} {:>12} {:>12} {:>9} {:>9} {:>10.6f} {:>10}\n", problem.n,
-                  problem.grain, name_of(problem.form), problem.prioritised ? "path" : "none",
-                  problem.first ? "first" : std::to_string(outcome.count.n_solutions),
-                  outcome.count.n_boards, outcome.n_tasks, outcome.n_dropped, outcome.seconds,
-                  efficiency > 0 ? fmt::format("{:.3f}", efficiency) : "");
-  if (problem.first)
-    text += "    " + (outcome.found ? to_text(outcome.solution, problem.n) : "no solution") + "\n";
-  return text;
+constexpr kit::Column<Row> columns[] = {
+    {"n", "n", "3", [](R r) -> Json { return r.problem.n; }},
+    {"grain", "grain", "6", [](R r) -> Json { return r.problem.grain; }},
+    {"form", "form", "7", [](R r) -> Json { return name_of(r.problem.form); }},
+    {"priority", "priority", "9",
+     [](R r) -> Json { return r.problem.prioritised ? "path" : "none"; }},
+    {"solutions", "solutions", "12", solutions},
+    {"boards", "boards", "12", [](R r) -> Json { return r.outcome.count.n_boards; }},
+    {"tasks", "tasks", "9", [](R r) -> Json { return r.outcome.n_tasks; }},
+    {"dropped", "dropped", "9", [](R r) -> Json { return r.outcome.n_dropped; }},
+    {"seconds", "seconds", "10.6f", [](R r) -> Json { return r.outcome.seconds; }},
+    {"efficiency", "efficiency", "10.3f",
+     [](R r) { return r.efficiency > 0 ? Json(r.efficiency) : Json(); }},
+    {"first", "", nullptr, first},
+    {"result_hash", "", nullptr, [](R r) -> Json { return kit::hex(r.outcome.hash); }},
+    {"", "", "<", [](R r) -> Json {
+       if (!r.problem.first) return "";
+       return r.outcome.found ? to_text(r.outcome.solution, r.problem.n) : "no solution";
+     }}};
+
+}  // namespace
+
+const kit::Rows<Row>& report() {
+  static const kit::Rows<Row> rows(columns);
+  return rows;
 }
 
 std::string fault(const Row& row, std::uint64_t expected) {
@@ -49,40 +68,13 @@ std::string fault(const Row& row, std::uint64_t expected) {
   return fmt::format("{} is not the first solution", to_text(outcome.solution, problem.n));
 }
 
-plot::Json json_of(const std::vector<Row>& rows) {
-  plot::Json all = plot::Json::array();
-  for (const auto& [problem, outcome, efficiency] : rows) {
-    plot::Json one = {{"n", problem.n},
-                      {"grain", problem.grain},
-                      {"form", name_of(problem.form)},
-                      {"priority", problem.prioritised ? "path" : "none"},
-                      {"boards", outcome.count.n_boards},
-                      {"tasks", outcome.n_tasks},
-                      {"dropped", outcome.n_dropped},
-                      {"seconds", outcome.seconds},
-                      {"result_hash", fmt::format("{:016x}", outcome.hash)}};
-    if (problem.first)
-      one["first"] = outcome.found ? to_text(outcome.solution, problem.n) : "";
-    else
-      one["solutions"] = outcome.count.n_solutions;
-    if (efficiency > 0) one["efficiency"] = efficiency;
-    all.push_back(std::move(one));
-  }
-  return all;
-}
-
-plot::Chart chart_of(const std::vector<Row>& rows) {
-  plot::Chart chart{
-      .title = fmt::format("{} queens, {} PEs", rows.front().problem.n, tess::n_pes()),
-      .x_label = "tasks (messages)",
-      .y_label = "efficiency",
-      .x_log = true};
-  for (const Row& row : rows) {
-    if (chart.series.empty() || chart.series.back().name != name_of(row.problem.form))
-      chart.series.push_back({.name = name_of(row.problem.form)});
-    chart.series.back().points.push_back(
-        {static_cast<double>(row.outcome.n_tasks), row.efficiency});
-  }
+kit::Chart chart_of(const std::vector<Row>& rows) {
+  kit::Chart chart{.title = fmt::format("{} queens, {} PEs", rows.front().problem.n, tess::n_pes()),
+                   .x_label = "tasks (messages)",
+                   .y_label = "efficiency",
+                   .x_log = true};
+  for (const Row& row : rows)
+    kit::add_point(chart, name_of(row.problem.form), row.outcome.n_tasks, row.efficiency);
   return chart;
 }
 

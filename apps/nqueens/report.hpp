@@ -1,9 +1,8 @@
 // What nqueens prints and writes.
 #pragma once
 
+#include "apps/kit/rows.hpp"
 #include "apps/nqueens/search.hpp"
-#include "apps/plot/chart.hpp"
-#include "apps/plot/json.hpp"
 
 #include <string>
 #include <vector>
@@ -17,14 +16,12 @@ struct Row {
   double efficiency = 0;  ///< 0: unknown
 };
 
-[[nodiscard]] std::string head();
-[[nodiscard]] std::string line(const Row& row);
+[[nodiscard]] const kit::Rows<Row>& report();
 
 /// Empty if the answer is right; `expected` is the number of solutions.
 [[nodiscard]] std::string fault(const Row& row, std::uint64_t expected);
 
-[[nodiscard]] plot::Json json_of(const std::vector<Row>& rows);
 /// Efficiency against the number of tasks, a line per form.
-[[nodiscard]] plot::Chart chart_of(const std::vector<Row>& rows);
+[[nodiscard]] kit::Chart chart_of(const std::vector<Row>& rows);
 
 }  // namespace nqueens

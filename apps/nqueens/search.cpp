@@ -1,6 +1,6 @@
 #include "apps/nqueens/search.hpp"
 
-#include "apps/charge.hpp"
+#include "apps/kit/charge.hpp"
 #include "runtime/core/error.hpp"
 #include "runtime/core/hash.hpp"
 #include "runtime/runtime.hpp"
@@ -83,7 +83,7 @@ void Searcher::run(Board board) {
     search_serially(board);
   } else {
     ++tally_.count.n_boards;
-    apps::charge(per_board, 1);
+    kit::charge(per_board, 1);
     for (std::uint32_t free = board.free(problem_.n); free != 0; free &= free - 1)
       send(board.with(free & -free));
   }
@@ -112,7 +112,7 @@ void Searcher::search_serially(const Board& board) {
   if (problem_.first) {
     const std::uint64_t n_before = tally_.count.n_boards;
     const auto queens = first_below(board, problem_.n, tally_.count.n_boards);
-    apps::charge(per_board, tally_.count.n_boards - n_before);
+    kit::charge(per_board, tally_.count.n_boards - n_before);
     if (queens) {
       best_ = {board.path, *queens};
       group().with(tess::expedited).broadcast<&Searcher::learn>(best_);
@@ -121,7 +121,7 @@ void Searcher::search_serially(const Board& board) {
     const Count below = count_below(board, problem_.n);
     tally_.count.n_solutions += below.n_solutions;
     tally_.count.n_boards += below.n_boards;
-    apps::charge(per_board, below.n_boards);
+    kit::charge(per_board, below.n_boards);
   }
 }
 

@@ -1,7 +1,7 @@
 // The options of the command line. Every room may include this header; it includes none of them.
 #pragma once
 
-#include "apps/progress.hpp"
+#include "apps/kit/progress.hpp"
 #include "runtime/balance_options.hpp"
 
 #include <cstdint>
@@ -16,15 +16,14 @@ struct RunOptions {
   /// Blocks migrate: in rounds after each exchange of particles, or beside the work (see
   /// runtime/balance.hpp). Absent: they stay, and no load is measured.
   std::optional<tess::BalanceOptions> balance{};
-  apps::Progress* progress = nullptr;  ///< shows the phase of the run; may be null
+  kit::Progress* progress = nullptr;  ///< shows the phase of the run; may be null
 };
 
 struct Options {
   std::string scene;
-  std::int32_t steps = -1;  ///< instead of the scene's; -1: the scene's
-  std::string json, out;
-  bool explain = false;
-  bool study = false;
+  std::optional<std::int32_t> steps;  ///< instead of the scene's
+  std::string out;
+  bool study = false;            ///< instead of a run
   std::vector<int> resolutions;  ///< of the study; empty: the usual ones
   bool compressed = false;       ///< also where the scene does not ask for it
   RunOptions run{};

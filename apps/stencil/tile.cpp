@@ -1,6 +1,6 @@
 #include "apps/stencil/tile.hpp"
 
-#include "apps/worst.hpp"
+#include "apps/kit/worst.hpp"
 #include "runtime/core/check.hpp"
 #include "runtime/core/hash.hpp"
 
@@ -12,8 +12,8 @@ namespace stencil {
 
 Outcome Combine::operator()(const Outcome& a, const Outcome& b) const {
   Outcome both{a.from_iterate, a.from_solution, a.hash + b.hash};
-  apps::worsen(both.from_iterate, b.from_iterate);
-  apps::worsen(both.from_solution, b.from_solution);
+  kit::worsen(both.from_iterate, b.from_iterate);
+  kit::worsen(both.from_solution, b.from_solution);
   return both;
 }
 
@@ -93,8 +93,8 @@ Outcome Tile::compare(std::int32_t steps) const {
     for (std::int32_t column = 0; column < width_; ++column) {
       const double value = values_[at(column, row)];
       const double solution = problem_.solution(x_ + column, y_ + row);
-      apps::worsen(outcome.from_iterate, std::abs(value - amplitude * solution));
-      apps::worsen(outcome.from_solution, std::abs(value - solution));
+      kit::worsen(outcome.from_iterate, std::abs(value - amplitude * solution));
+      kit::worsen(outcome.from_solution, std::abs(value - solution));
       const auto point =
           static_cast<std::uint64_t>(y_ + row) << 32U | static_cast<std::uint64_t>(x_ + column);
       outcome.hash += tess::mix(tess::mix(point) ^ std::bit_cast<std::uint64_t>(value));

@@ -1,7 +1,7 @@
 #include "apps/task_bench/experiment.hpp"
 
-#include "apps/median.hpp"
-#include "apps/wrong_answer.hpp"
+#include "apps/kit/median.hpp"
+#include "apps/kit/wrong_answer.hpp"
 
 #include <algorithm>
 #include <deque>
@@ -72,7 +72,7 @@ tess::Task Bench::run(std::optional<std::int64_t> iterations, double* seconds) {
 void Bench::check(std::size_t graph, const Count& count) const {
   const Totals& expected = totals_[graph];
   if (count.n_tasks == expected.n_tasks && count.n_inputs == expected.n_dependences) return;
-  apps::end_with(fmt::format(
+  kit::end_with(fmt::format(
       "task_bench: wrong answer: {} ran {} tasks with {} inputs, the graph has {} and {}",
       name_of(graphs_[graph].type), count.n_tasks, count.n_inputs, expected.n_tasks,
       expected.n_dependences));
@@ -114,7 +114,7 @@ tess::Task Bench::measure(std::optional<std::int64_t> iterations, Row* row) {
     co_await run(iterations, &seconds);
     all.push_back(seconds);
   }
-  *row = row_of(iterations, settings_.fastest ? std::ranges::min(all) : apps::median(all));
+  *row = row_of(iterations, settings_.fastest ? std::ranges::min(all) : kit::median(all));
 }
 
 tess::Task Bench::measure_all(Result* result) {

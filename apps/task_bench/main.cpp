@@ -1,7 +1,7 @@
 // task_bench: the task graphs of Task Bench (Slaughter et al., SC20) on chare arrays. It measures
 // how small tasks may be before the runtime costs as much as they do.
-#include "apps/plot/file_names.hpp"
-#include "apps/plot/write_file.hpp"
+#include "apps/kit/file_names.hpp"
+#include "apps/kit/write_file.hpp"
 #include "apps/task_bench/report.hpp"
 
 namespace task_bench {
@@ -21,10 +21,10 @@ int start(tess::Setup& setup, int argc, char** argv) {
   const auto settings = parse(argc, argv, *setup.machine);
   if (!settings) return 0;
   // On all processes, so that all of them detect an error.
-  plot::require_writable("--json", settings->json);
-  plot::require_writable("--csv", settings->csv);
-  plot::require_picture("--plot", settings->plot);
-  plot::FileNames names;
+  kit::require_writable("--json", settings->json);
+  kit::require_writable("--csv", settings->csv);
+  kit::require_picture("--plot", settings->plot);
+  kit::FileNames names;
   names.writes("--trace", setup.options.trace);
   names.writes("--json", settings->json);
   names.writes("--csv", settings->csv);

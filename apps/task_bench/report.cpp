@@ -1,8 +1,8 @@
 #include "apps/task_bench/report.hpp"
 
-#include "apps/plot/chart.hpp"
-#include "apps/plot/json.hpp"
-#include "apps/plot/write_file.hpp"
+#include "apps/kit/chart.hpp"
+#include "apps/kit/json.hpp"
+#include "apps/kit/write_file.hpp"
 
 #include <fmt/format.h>
 
@@ -92,10 +92,10 @@ std::string explain(const Settings& settings) {
 
 void write_json(const std::string& path, const std::vector<Result>& results,
                 const std::string& machine) {
-  plot::Json all = plot::Json::array();
+  kit::Json all = kit::Json::array();
   for (const Result& result : results) {
     const Row& first = result.rows.front();
-    plot::Json rows = plot::Json::array();
+    kit::Json rows = kit::Json::array();
     for (const Row& row : result.rows)
       rows.push_back({{"iterations", row.iterations},
                       {"grain_us", rounded(1e6 * row.grain_seconds)},
@@ -103,7 +103,7 @@ void write_json(const std::string& path, const std::vector<Result>& results,
                       {"tasks", row.n_tasks},
                       {"dependences", row.n_dependences},
                       {"efficiency", rounded(row.efficiency)}});
-    plot::Json one = {
+    kit::Json one = {
         {"type", first.type},     {"kernel", first.kernel},  {"width", first.width},
         {"steps", first.steps},   {"pes", first.pes},        {"ranks", first.ranks},
         {"metg_us", nullptr},     {"metg_wall_us", nullptr}, {"metg_is_upper_bound", false},
@@ -115,8 +115,8 @@ void write_json(const std::string& path, const std::vector<Result>& results,
     }
     all.push_back(std::move(one));
   }
-  const plot::Json file = {{"machine", machine}, {"results", std::move(all)}};
-  plot::write_file(path, plot::json_text(file));
+  const kit::Json file = {{"machine", machine}, {"results", std::move(all)}};
+  kit::write_file(path, kit::json_text(file));
 }
 
 void write_csv(const std::string& path, const std::vector<Result>& results) {
@@ -128,18 +128,18 @@ void write_csv(const std::string& path, const std::vector<Result>& results) {
       text += fmt::format("{},{},{},{},{},{},{},{},{},{:.6g},{:.6g},{:.6g}\n", row.type, row.kernel,
                           row.width, row.steps, row.pes, row.ranks, row.iterations, row.n_tasks,
                           row.n_dependences, 1e6 * row.grain_seconds, row.seconds, row.efficiency);
-  plot::write_file(path, text);
+  kit::write_file(path, text);
 }
 
 void draw(const std::string& path, const std::vector<Result>& results) {
   const Row& first = results.front().rows.front();
-  plot::Chart chart{.title = fmt::format("Task Bench, {} PEs on {} ranks", first.pes, first.ranks),
-                    .x_label = "kernel of one task, us",
-                    .y_label = "efficiency",
-                    .x_log = true};
+  kit::Chart chart{.title = fmt::format("Task Bench, {} PEs on {} ranks", first.pes, first.ranks),
+                   .x_label = "kernel of one task, us",
+                   .y_label = "efficiency",
+                   .x_log = true};
   double least = 1e300, most = 0;
   for (const Result& result : results) {
-    plot::Series series{.name = result.rows.front().type};
+    kit::Series series{.name = result.rows.front().type};
     for (const Row& row : result.rows) {
       series.points.push_back({1e6 * row.grain_seconds, row.efficiency});
       least = std::min(least, 1e6 * row.grain_seconds);
@@ -148,8 +148,8 @@ void draw(const std::string& path, const std::vector<Result>& results) {
     chart.series.push_back(std::move(series));
   }
   chart.series.push_back(
-      {.name = "one half", .points = {{least, 0.5}, {most, 0.5}}, .style = plot::Style::dashes});
-  (void)plot::write_svg(path, chart);
+      {.name = "one half", .points = {{least, 0.5}, {most, 0.5}}, .style = kit::Style::dashes});
+  (void)kit::write_svg(path, chart);
 }
 
 }  // namespace task_bench

@@ -18,8 +18,8 @@ for balance in "" "--balance greedy_refine" "--balance hilbert" "--balance rotat
 done
 exits 0 "result_hash $hash" "${mpirun[@]}" -n 3 "${work[@]}" --pes 2 --balance random
 
-exits 0 "23 of 23 cases hold" "$bin" --stability --pes 2
-exits 1 "10 of 23 cases hold" "$bin" --stability --uncorrected --pes 2
+exits 0 "23 cases, 0 failed" "$bin" --stability --pes 2
+exits 1 "23 cases, 13 failed" "$bin" --stability --uncorrected --pes 2
 exits 1 "the mass changed by" "$bin" --steps 4 --uncorrected --pes 1
 
 exits 0 "order" "$bin" --study --max-level 3 --cells 4 --pes 2 --json "$scratch/study.json" --plot "$scratch/study.svg"
@@ -39,7 +39,7 @@ exits 2 "periodic" "$bin" --balance greedy,when=periodic,period=1s
 exits 2 "needs --study" "$bin" --plot "$scratch/x.svg"
 exits 2 "would overwrite --json" "$bin" --study --json "$scratch/x.csv" --plot "$scratch/x.svg"
 exits 2 "would overwrite --trace" "$bin" --trace "$scratch/x.json" --json "$scratch/x.json"
-exits 2 "choose one" "$bin" --study --stability
+exits 2 "does not work with" "$bin" --study --stability
 exits 2 "--json" "$bin" --json "$scratch/missing/x.json"
 exits 2 "--nonsense" "${mpirun[@]}" -n 2 "$bin" --nonsense
 exits 0 "--sim" "$bin" --help

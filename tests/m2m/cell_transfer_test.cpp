@@ -1,7 +1,7 @@
 // Fields in elements, moved by each kind between meshes of each type of element.
 #include "m2m/cell_transfer.hpp"
 
-#include "apps/worst.hpp"
+#include "apps/kit/worst.hpp"
 #include "m2m/workers/cell_worker.hpp"
 #include "runtime/core/error.hpp"
 #include "runtime/here.hpp"
@@ -141,7 +141,7 @@ TEST_CASE("kinds with gradients are exact for linear fields between all types of
         double error = 0;
         bool twice = true;
         for (std::size_t t = 0; t < target.n_tets(); ++t) {
-          apps::worsen(error, std::abs(got.values[2 * t] - mean_at(target, t)));
+          kit::worsen(error, std::abs(got.values[2 * t] - mean_at(target, t)));
           twice = twice && std::abs(got.values[2 * t + 1] + 2 * got.values[2 * t]) < 1e-13;
         }
         CHECK(twice);
@@ -176,7 +176,7 @@ TEST_CASE("limits leave linear fields as they are inside", "[m2m][cells]") {
       });
       if (!inner) continue;
       ++n_inner;
-      apps::worsen(error, std::abs(found.fields[0].values[2 * t] - mean_at(target, t)));
+      kit::worsen(error, std::abs(found.fields[0].values[2 * t] - mean_at(target, t)));
     }
     CHECK(n_inner > 100);
     CHECK(error < 1e-13);
@@ -207,7 +207,7 @@ TEST_CASE("from a single layer of elements, flat up to rounding or curved, cells
         if (found.status[t] == Status::outside) continue;
         ++n_found;
         const double want = test::wave_at(mean_of_corners(corners_at(target, t)), layer.origin);
-        apps::worsen(error, std::abs(found.fields[0].values[t] - want));
+        kit::worsen(error, std::abs(found.fields[0].values[t] - want));
       }
       CHECK(n_found > target.n_tets() / 2);
       CHECK(error < 0.1);

@@ -1,7 +1,7 @@
 // The weights of couplings against the couplings themselves.
 #include "m2m/coupling_weights.hpp"
 
-#include "apps/worst.hpp"
+#include "apps/kit/worst.hpp"
 #include "m2m/parallel/row_book.hpp"
 #include "m2m/read_mesh.hpp"
 #include "runtime/machine/simulated.hpp"
@@ -140,7 +140,7 @@ TEST_CASE("weights of second-order transfers give the values up to rounding", "[
   const std::vector<double> out = by_weights(c, result.weights);
   double worst = 0;
   for (std::size_t i = 0; i < out.size(); ++i)
-    apps::worsen(worst, std::abs(out[i] - result.values[i]));
+    kit::worsen(worst, std::abs(out[i] - result.values[i]));
   CHECK(worst < 1e-13);
   const Weighed linear;
   CHECK(by_weights(linear, run_case(linear, 2).weights) != out);

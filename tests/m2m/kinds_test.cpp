@@ -1,5 +1,5 @@
 // Kinds of transfer through chares: the same bits for any number of parts, and their orders.
-#include "apps/worst.hpp"
+#include "apps/kit/worst.hpp"
 #include "m2m/read_mesh.hpp"
 #include "m2m/transfer.hpp"
 #include "runtime/testing.hpp"
@@ -212,7 +212,7 @@ TEST_CASE("every kind takes and gives values at the vertices of every type of el
         const std::vector<double> one = linear_result(from, to, {kind, 1}, 4);
         double error = 0;
         for (std::size_t v = 0; v < to.n_points(); ++v)
-          apps::worsen(error, std::abs(one[v] - test::linear_at(to.points[v])));
+          kit::worsen(error, std::abs(one[v] - test::linear_at(to.points[v])));
         CHECK(error < (smooths ? (2 + 3 + 5) * 1.2 / 3 : 1e-12));
         CHECK(linear_result(from, to, {kind, 5}, 3) == one);
       }

@@ -1,7 +1,7 @@
 #include "apps/bench/calibrate/calibrate.hpp"
 
 #include "apps/bench/calibrate/fit.hpp"
-#include "apps/plot/write_file.hpp"
+#include "apps/kit/write_file.hpp"
 #include "runtime/core/error.hpp"
 #include "runtime/machine/simulated.hpp"
 
@@ -71,7 +71,7 @@ int calibrate(const Bench& bench, const std::string& path) {
   if (measured.exchange_packed > 0)
     show("the same with 8 KiB", measured.exchange_packed, fitted.simulated.exchange_packed);
   const std::string before = contents(path);
-  plot::write_file(path, wire_file(joins, fitted.wire, bench.origin().machine, before));
+  kit::write_file(path, wire_file(joins, fitted.wire, bench.origin().machine, before));
   tess::print(path, ":\n", contents(path));
   return 0;
 }

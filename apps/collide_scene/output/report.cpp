@@ -1,6 +1,6 @@
 #include "apps/collide_scene/output/report.hpp"
 
-#include "apps/plot/json.hpp"
+#include "apps/kit/json.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -134,7 +134,7 @@ std::string table(const Report& report) {
 std::string json(const Report& report) {
   const RunResult& result = report.result;
   const Answer total = result.total();
-  plot::Json out;
+  kit::Json out;
   const auto set = [&out](const char* key, const auto& value) {
     if (value)
       out[key] = *value;
@@ -167,7 +167,7 @@ std::string json(const Report& report) {
   out["machine"] = report.on_chares ? report.machine : "one thread";
   out["pes"] = report.n_pes;
   out["processes"] = report.n_processes;
-  out["rows"] = plot::Json::array();
+  out["rows"] = kit::Json::array();
   for (std::size_t i = 0; i < result.steps.size(); ++i)
     out["rows"].push_back({{"step", i},
                            {"pairs", result.steps[i].answer.n_pairs},
@@ -175,7 +175,7 @@ std::string json(const Report& report) {
                            {"searched", result.steps[i].searched},
                            {"kept", result.steps[i].n_kept},
                            {"seconds", result.steps[i].seconds}});
-  return plot::json_text(out);
+  return kit::json_text(out);
 }
 
 }  // namespace collide_scene

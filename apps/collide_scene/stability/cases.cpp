@@ -33,7 +33,7 @@ std::vector<ScenePair> brute_force(const Scene& scene, const Rules& rules) {
 
 class Reporter {
  public:
-  explicit Reporter(apps::Progress* progress) : progress_(progress) {}
+  explicit Reporter(kit::Progress* progress) : progress_(progress) {}
 
   /// A row for each: touching counts or not; boxes, and triangles if there are some.
   void add(const std::string& name, const std::string& parameter, double value, const Scene& scene,
@@ -72,7 +72,7 @@ class Reporter {
     rows.push_back(std::move(row));
   }
 
-  apps::Progress* progress_;
+  kit::Progress* progress_;
 };
 
 void places_and_scales(Reporter& report, const Scene& base, const std::string& objects) {
@@ -103,7 +103,7 @@ Difference difference(const std::vector<ScenePair>& expected, std::vector<SceneP
   return out;
 }
 
-std::vector<StabilityRow> stability_report(apps::Progress* progress) {
+std::vector<StabilityRow> stability_report(kit::Progress* progress) {
   constexpr std::size_t n = 600;
   Reporter report(progress);
   places_and_scales(report, random_boxes_around_zero(n), "boxes");

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "apps/collide_scene/run/result.hpp"
-#include "apps/progress.hpp"
+#include "apps/kit/progress.hpp"
 
 #include <cstdint>
 #include <string>
@@ -36,6 +36,6 @@ struct Difference {
                                     std::vector<ScenePair> found);
 
 /// Takes some seconds. `progress` may be null.
-[[nodiscard]] std::vector<StabilityRow> stability_report(apps::Progress* progress = nullptr);
+[[nodiscard]] std::vector<StabilityRow> stability_report(kit::Progress* progress = nullptr);
 
 }  // namespace collide_scene

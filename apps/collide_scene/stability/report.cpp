@@ -9,7 +9,7 @@
 namespace collide_scene {
 
 bool print_stability() {
-  apps::Progress progress(stderr);
+  kit::Progress progress(stderr);
   const std::vector<StabilityRow> rows = stability_report(&progress);
   progress.clear();
   std::size_t width = 4;

@@ -1,7 +1,7 @@
 #include "apps/collide_scene/study/study.hpp"
-#include "apps/plot/chart.hpp"
-#include "apps/plot/quoting.hpp"
-#include "apps/plot/write_file.hpp"
+#include "apps/kit/chart.hpp"
+#include "apps/kit/quoting.hpp"
+#include "apps/kit/write_file.hpp"
 
 #include <array>
 #include <fmt/format.h>
@@ -32,16 +32,16 @@ struct Picture {
   double (*x)(const StudyRow&);
   double (*y)(const StudyRow&);
   bool x_log, y_log;
-  plot::Style style;
+  kit::Style style;
 };
 constexpr std::array pictures{
     Picture{"_study_time.svg", "time", "voxel size", "CPU ns per object", voxel_size, ns_per_object,
-            true, true, plot::Style::lines_points},
+            true, true, kit::Style::lines_points},
     Picture{"_study_entries.svg", "objects in voxels", "voxel size", "(object, voxel)", voxel_size,
-            entries, true, true, plot::Style::lines_points},
+            entries, true, true, kit::Style::lines_points},
     Picture{"_study_error.svg", "error against run time, a point per voxel size",
             "CPU ns per object", "pairs that are none, %", ns_per_object, false_percent, true,
-            false, plot::Style::points}};
+            false, kit::Style::points}};
 
 }  // namespace
 
@@ -82,27 +82,27 @@ std::string study_csv(const std::vector<StudyRow>& rows) {
                        count(grid.n_entries), count(grid.n_left_out), row.answer.n_candidates,
                        row.answer.n_pairs, row.false_positive_rate, or_else(row.grid.bytes, ""),
                        row.cpu_seconds, row.ns_per_object, row.agrees ? 1 : 0,
-                       plot::csv_field(row.note));
+                       kit::csv_field(row.note));
   }
   return out;
 }
 
 void write_study(const std::string& prefix, const std::vector<StudyRow>& rows) {
-  plot::write_file(prefix + "_study.csv", study_csv(rows));
+  kit::write_file(prefix + "_study.csv", study_csv(rows));
   for (const Picture& picture : pictures) {
-    plot::Chart chart{.title = picture.title,
-                      .x_label = picture.x_label,
-                      .y_label = picture.y_label,
-                      .x_log = picture.x_log,
-                      .y_log = picture.y_log};
+    kit::Chart chart{.title = picture.title,
+                     .x_label = picture.x_label,
+                     .y_label = picture.y_label,
+                     .x_log = picture.x_log,
+                     .y_log = picture.y_log};
     for (const char* objects : {"boxes", "triangles"}) {
-      plot::Series series{.name = objects, .style = picture.style};
+      kit::Series series{.name = objects, .style = picture.style};
       for (const StudyRow& row : rows)
         if (row.objects == objects && row.note.empty() && (!picture.y_log || picture.y(row) > 0))
           series.points.push_back({picture.x(row), picture.y(row)});
       if (!series.points.empty()) chart.series.push_back(std::move(series));
     }
-    if (!chart.series.empty()) (void)plot::write_svg(prefix + picture.file, chart);
+    if (!chart.series.empty()) (void)kit::write_svg(prefix + picture.file, chart);
   }
 }
 

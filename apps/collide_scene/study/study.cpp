@@ -41,7 +41,7 @@ void measure(const Scene& scene, const Rules& rules, StudyRow& row) {
 
 }  // namespace
 
-std::vector<StudyRow> study(const Scene& scene, const Options& options, apps::Progress& progress) {
+std::vector<StudyRow> study(const Scene& scene, const Options& options, kit::Progress& progress) {
   constexpr std::array factors{1.0, 0.125, 0.25, 0.5, 2.0, 4.0, 8.0, 16.0};
   const std::uint32_t n_kinds = scene.triangles.empty() ? 1 : 2;
   std::vector<StudyRow> rows;

@@ -5,7 +5,7 @@
 #include "apps/collide_scene/options.hpp"
 #include "apps/collide_scene/run/result.hpp"
 #include "apps/collide_scene/scenes/scene.hpp"
-#include "apps/progress.hpp"
+#include "apps/kit/progress.hpp"
 
 #include <string>
 #include <vector>
@@ -27,7 +27,7 @@ struct StudyRow {
 
 /// Serial runs of the scene as it is, under the rules of the options except their voxel size.
 [[nodiscard]] std::vector<StudyRow> study(const Scene& scene, const Options& options,
-                                          apps::Progress& progress);
+                                          kit::Progress& progress);
 
 /// True if no voxel size changed an answer.
 [[nodiscard]] bool agrees(const std::vector<StudyRow>& rows);

@@ -11,8 +11,8 @@ constexpr std::size_t most_points = 160;  // of a curve: as many as one sees
 
 /// A PE's time in the drawn iterations: its work, rounds on top, idle between.
 void draw_pe(std::size_t pe, const PeRecord& record, const std::vector<Interval>& rounds,
-             double began, double end, plot::Timeline& timeline) {
-  const auto bar = [&](double from, double to, plot::Activity activity) {
+             double began, double end, kit::Timeline& timeline) {
+  const auto bar = [&](double from, double to, kit::Activity activity) {
     if (from < to) timeline.bars.push_back({pe, from - began, to - began, activity});
   };
   double at = began;
@@ -21,17 +21,17 @@ void draw_pe(std::size_t pe, const PeRecord& record, const std::vector<Interval>
     for (; next < rounds.size() && rounds[next].begin < until; ++next) {
       const double from = std::max(at, rounds[next].begin), to = std::min(until, rounds[next].end);
       if (from >= to) continue;
-      bar(at, from, plot::Activity::idle);
-      bar(from, to, plot::Activity::balancing);
+      bar(at, from, kit::Activity::idle);
+      bar(from, to, kit::Activity::balancing);
       at = to;
     }
-    bar(at, until, plot::Activity::idle);
+    bar(at, until, kit::Activity::idle);
     at = std::max(at, until);
   };
   for (const Interval& busy : record.busy) {
     if (next > 0) --next;  // a round may reach over several intervals
     rest_until(busy.begin);
-    bar(std::max(at, busy.begin), busy.end, plot::Activity::busy);
+    bar(std::max(at, busy.begin), busy.end, kit::Activity::busy);
     at = std::max(at, busy.end);
   }
   if (next > 0) --next;
@@ -39,8 +39,8 @@ void draw_pe(std::size_t pe, const PeRecord& record, const std::vector<Interval>
 }
 
 /// Means over as many iterations each as it takes.
-plot::Series curve_of(const Row& row) {
-  plot::Series curve{.name = row.strategy, .style = plot::Style::lines};
+kit::Series curve_of(const Row& row) {
+  kit::Series curve{.name = row.strategy, .style = kit::Style::lines};
   const std::vector<double>& values = row.imbalance_of_iteration;
   const std::size_t window = (values.size() + most_points - 1) / most_points;
   for (std::size_t first = 0; first < values.size(); first += window) {
@@ -53,8 +53,8 @@ plot::Series curve_of(const Row& row) {
   return curve;
 }
 
-plot::Timeline timeline_of(const Outcome& outcome, const Row& row) {
-  plot::Timeline timeline;
+kit::Timeline timeline_of(const Outcome& outcome, const Row& row) {
+  kit::Timeline timeline;
   const std::size_t n = std::min(most_rows, outcome.records.size());
   timeline.title = fmt::format(
       "{}, {} chares per PE, {}: the first iterations{}", row.workload, row.per_pe, row.strategy,
@@ -85,15 +85,15 @@ void Drawings::write(const std::string& directory) const {
   };
   const Run& best = *std::ranges::min_element(runs_, faster);
 
-  plot::Chart time{
+  kit::Chart time{
       .title = fmt::format("{} on {} PEs: the same work in more chares", workload_, best.row.n_pes),
       .x_label = "chares per PE",
       .y_label = "ms per iteration",
       .x_log = true};
-  plot::Chart balance{.title = fmt::format("{} on {} PEs, {} chares per PE", workload_,
-                                           best.row.n_pes, best.row.per_pe),
-                      .x_label = "iteration",
-                      .y_label = "max/average"};
+  kit::Chart balance{.title = fmt::format("{} on {} PEs, {} chares per PE", workload_,
+                                          best.row.n_pes, best.row.per_pe),
+                     .x_label = "iteration",
+                     .y_label = "max/average"};
   std::map<std::string, std::size_t> at;
   const Run* drawn = nullptr;  // the fastest that was balanced at the best cut
   for (const Run& run : runs_) {
@@ -107,14 +107,14 @@ void Drawings::write(const std::string& directory) const {
     if (row.per_pe != best.row.per_pe) continue;
     balance.series.push_back(curve_of(row));
     if (row.strategy == "none") {
-      plot::write_svg(path("timeline-none"), run.timeline);
+      kit::write_svg(path("timeline-none"), run.timeline);
     } else if (drawn == nullptr || faster(run, *drawn)) {
       drawn = &run;
     }
   }
-  plot::write_svg(path("time"), time);
-  plot::write_svg(path("imbalance"), balance);
-  if (drawn != nullptr) plot::write_svg(path("timeline-" + drawn->row.strategy), drawn->timeline);
+  kit::write_svg(path("time"), time);
+  kit::write_svg(path("imbalance"), balance);
+  if (drawn != nullptr) kit::write_svg(path("timeline-" + drawn->row.strategy), drawn->timeline);
 }
 
 }  // namespace lb_lab

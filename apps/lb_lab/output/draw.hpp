@@ -2,10 +2,10 @@
 // of PEs before and after the first rounds.
 #pragma once
 
+#include "apps/kit/chart.hpp"
+#include "apps/kit/timeline.hpp"
 #include "apps/lb_lab/run/experiment.hpp"
 #include "apps/lb_lab/run/sweep_rows.hpp"
-#include "apps/plot/chart.hpp"
-#include "apps/plot/timeline.hpp"
 
 #include <string>
 
@@ -24,7 +24,7 @@ class Drawings {
  private:
   struct Run {
     Row row;
-    plot::Timeline timeline;
+    kit::Timeline timeline;
   };
   std::string workload_;
   std::vector<Run> runs_;

@@ -28,7 +28,6 @@ struct Row {
 struct Sweep {
   Settings settings;
   std::function<void(const Row&)> on_row;  ///< called with each row; may be empty
-  std::string machine;
   std::vector<Row> rows;
   std::string wrong;  ///< the first run with another answer than the serial one; empty: none
 };

@@ -1,9 +1,9 @@
 #include "apps/m2m_transfer/output/drift.hpp"
 
-#include "apps/plot/chart.hpp"
-#include "apps/plot/json.hpp"
-#include "apps/plot/quoting.hpp"
-#include "apps/plot/write_file.hpp"
+#include "apps/kit/chart.hpp"
+#include "apps/kit/json.hpp"
+#include "apps/kit/quoting.hpp"
+#include "apps/kit/write_file.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -18,16 +18,16 @@ bool several_fields(const Drift& drift) {
 }
 
 /// A line per kind and field.
-plot::Chart chart_of(const Drift& drift, const std::string& quantity, double DriftRow::*value) {
-  plot::Chart chart{.title = "drift over round trips",
-                    .x_label = "round trips",
-                    .y_label = quantity,
-                    .x_log = true,
-                    .y_log = true};
+kit::Chart chart_of(const Drift& drift, const std::string& quantity, double DriftRow::*value) {
+  kit::Chart chart{.title = "drift over round trips",
+                   .x_label = "round trips",
+                   .y_label = quantity,
+                   .x_log = true,
+                   .y_log = true};
   for (const DriftRow& row : drift.rows) {
     const std::string name = row.kind + (several_fields(drift) ? ", " + row.field : std::string());
     auto at = std::ranges::find_if(chart.series,
-                                   [&](const plot::Series& series) { return series.name == name; });
+                                   [&](const kit::Series& series) { return series.name == name; });
     if (at == chart.series.end()) {
       chart.series.push_back({name});
       at = chart.series.end() - 1;
@@ -64,10 +64,10 @@ std::string table(const Drift& drift) {
 }
 
 std::string json(const Drift& drift) {
-  plot::Json whole{{"source", drift.source},
-                   {"target", drift.target},
-                   {"policy", drift.policy},
-                   {"machine", drift.machine}};
+  kit::Json whole{{"source", drift.source},
+                  {"target", drift.target},
+                  {"policy", drift.policy},
+                  {"machine", drift.machine}};
   whole["trip_seconds"] = drift.trip_seconds;
   for (const DriftRow& row : drift.rows)
     whole["rows"].push_back({{"kind", row.kind},
@@ -79,22 +79,22 @@ std::string json(const Drift& drift) {
                              {"integral", row.integral},
                              {"integral_change", row.integral_change},
                              {"result_hash", fmt::format("{:016x}", row.hash)}});
-  return plot::json_text(whole);
+  return kit::json_text(whole);
 }
 
 std::string write(const Drift& drift, const std::string& folder) {
   std::string csv =
       "kind,field,trips,l2_relative,linf,l2_kept,integral,integral_change,result_hash\n";
   for (const DriftRow& row : drift.rows)
-    csv += fmt::format("{},{},{},{},{},{},{},{},{:016x}\n", row.kind, plot::csv_field(row.field),
+    csv += fmt::format("{},{},{},{},{},{},{},{},{:016x}\n", row.kind, kit::csv_field(row.field),
                        row.trips, row.l2_relative, row.linf, row.l2_kept, row.integral,
                        row.integral_change, row.hash);
-  plot::write_file(folder + "/drift.csv", csv);
-  plot::write_file(folder + "/drift.json", json(drift));
-  bool drawn = plot::write_svg(
+  kit::write_file(folder + "/drift.csv", csv);
+  kit::write_file(folder + "/drift.json", json(drift));
+  bool drawn = kit::write_svg(
       folder + "/drift_l2.svg",
       chart_of(drift, "relative L2 difference to the start", &DriftRow::l2_relative));
-  drawn = plot::write_svg(
+  drawn = kit::write_svg(
               folder + "/drift_integral.svg",
               chart_of(drift, "relative change of the integral", &DriftRow::integral_change)) &&
           drawn;

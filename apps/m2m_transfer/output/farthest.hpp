@@ -1,7 +1,7 @@
 // The target vertices that lie farthest from the source, in reports.
 #pragma once
 
-#include "apps/plot/json.hpp"
+#include "apps/kit/json.hpp"
 #include "m2m/worst_places.hpp"
 
 #include <fmt/format.h>
@@ -19,8 +19,8 @@ namespace m2m_transfer {
   return out;
 }
 
-[[nodiscard]] inline plot::Json json_of(const tess::m2m::WorstPlaces& places) {
-  plot::Json out = plot::Json::array();
+[[nodiscard]] inline kit::Json json_of(const tess::m2m::WorstPlaces& places) {
+  kit::Json out = kit::Json::array();
   for (const tess::m2m::WorstPlace& p : places.list())
     out.push_back({{"vertex", p.point},
                    {"at", p.at},

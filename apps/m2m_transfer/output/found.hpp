@@ -1,8 +1,8 @@
 // What a search found, and what became of the elements of the files, in reports.
 #pragma once
 
+#include "apps/kit/json.hpp"
 #include "apps/m2m_transfer/report.hpp"
-#include "apps/plot/json.hpp"
 
 #include <array>
 #include <fmt/format.h>
@@ -27,7 +27,7 @@ namespace m2m_transfer {
   return out;
 }
 
-[[nodiscard]] inline plot::Json json_of(const OtherElements& source, const OtherElements& target) {
+[[nodiscard]] inline kit::Json json_of(const OtherElements& source, const OtherElements& target) {
   return {{"skipped", {{"source", source.skipped}, {"target", target.skipped}}},
           {"split", {{"source", source.split}, {"target", target.split}}},
           {"unused", {{"source", source.unused}, {"target", target.unused}}},

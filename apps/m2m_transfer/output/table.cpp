@@ -14,7 +14,7 @@ double megabytes(std::uint64_t bytes) {
   return static_cast<double>(bytes) / 1e6;
 }
 
-plot::Json norms_of(const ErrorNorms& norms) {
+kit::Json norms_of(const ErrorNorms& norms) {
   return {{"l2", norms.l2},
           {"l2_relative", norms.l2_relative},
           {"rms", norms.rms},
@@ -40,15 +40,15 @@ constexpr std::array definitions{
     Definition{"found", "the same over vertices that are inside, boundary or snapped"}};
 
 /// {"vertices": n, "l2": …}; null if no vertex was found.
-plot::Json found_of(const ErrorNorms& norms) {
+kit::Json found_of(const ErrorNorms& norms) {
   if (norms.n_vertices == 0) return nullptr;
   auto out = norms_of(norms);
   out["vertices"] = norms.n_vertices;
   return out;
 }
 
-plot::Json pair_of(const TransferReport& r) {
-  plot::Json pair;
+kit::Json pair_of(const TransferReport& r) {
+  kit::Json pair;
   pair["source"] = r.source;
   pair["target"] = r.target;
   pair.update(json_of(r.source_elements, r.target_elements));
@@ -85,9 +85,9 @@ plot::Json pair_of(const TransferReport& r) {
   pair["processes"] = r.processes;
   pair["chares"] = r.chares;
   pair["voxel"] = r.voxel;
-  pair["fields"] = plot::Json::array();
+  pair["fields"] = kit::Json::array();
   for (const FieldError& field : r.fields) {
-    plot::Json of_field{{"name", field.name}};
+    kit::Json of_field{{"name", field.name}};
     of_field.update(norms_of(field.norms));
     of_field["integral"] = {{"source", field.source_integral}, {"target", field.target_integral}};
     of_field["found"] = found_of(field.found);
@@ -170,16 +170,16 @@ std::string legend() {
          "  (those outside have the values of the policy)\n";
 }
 
-plot::Json json_of(const std::vector<TransferReport>& reports) {
-  plot::Json whole;
+kit::Json json_of(const std::vector<TransferReport>& reports) {
+  kit::Json whole;
   for (const Definition& d : definitions) whole["definitions"][d.name] = d.meaning;
-  whole["pairs"] = plot::Json::array();
+  whole["pairs"] = kit::Json::array();
   for (const TransferReport& report : reports) whole["pairs"].push_back(pair_of(report));
   return whole;
 }
 
 std::string json(const std::vector<TransferReport>& reports) {
-  return plot::json_text(json_of(reports));
+  return kit::json_text(json_of(reports));
 }
 
 }  // namespace m2m_transfer

@@ -1,8 +1,8 @@
 // The report of a transfer, as a table and as JSON.
 #pragma once
 
+#include "apps/kit/json.hpp"
 #include "apps/m2m_transfer/report.hpp"
-#include "apps/plot/json.hpp"
 
 #include <string>
 #include <vector>
@@ -13,7 +13,7 @@ namespace m2m_transfer {
 /// The meaning of the numbers in a table.
 [[nodiscard]] std::string legend();
 /// {"definitions": {…}, "pairs": [{…}]}
-[[nodiscard]] plot::Json json_of(const std::vector<TransferReport>& reports);
+[[nodiscard]] kit::Json json_of(const std::vector<TransferReport>& reports);
 [[nodiscard]] std::string json(const std::vector<TransferReport>& reports);
 
 }  // namespace m2m_transfer

@@ -24,7 +24,7 @@ DriftRow row_of(const std::string& field, const FieldNorms& norms) {
 }
 
 /// All counts of round trips with one kind.
-Task run_kind(Problem& problem, const std::vector<std::int32_t>& trips, apps::Progress& progress,
+Task run_kind(Problem& problem, const std::vector<std::int32_t>& trips, kit::Progress& progress,
               Drift& drift) {
   progress.phase("partition");
   std::vector<DistributedMesh> meshes = co_await place(problem, problem.kind, problem.chares());
@@ -73,7 +73,7 @@ std::vector<std::int32_t> parse_trips(const std::string& text) {
 }
 
 Task measure_drift(Request request, const std::vector<TransferKind>& kinds,
-                   const std::vector<std::int32_t>& trips, apps::Progress& progress, Drift& drift) {
+                   const std::vector<std::int32_t>& trips, kit::Progress& progress, Drift& drift) {
   request.pairs = "A:B,B:A";
   progress.phase("reading");
   Problem problem = co_await load(request);

@@ -3,8 +3,8 @@
 // (m2m/field_norms.hpp).
 #pragma once
 
+#include "apps/kit/progress.hpp"
 #include "apps/m2m_transfer/input/problem.hpp"
-#include "apps/progress.hpp"
 #include "runtime/runtime.hpp"
 
 #include <cstdint>
@@ -36,6 +36,6 @@ struct Drift {
 
 /// Runs all kinds one after the other. `request` has two meshes and no pairs.
 Task measure_drift(Request request, const std::vector<TransferKind>& kinds,
-                   const std::vector<std::int32_t>& trips, apps::Progress& progress, Drift& drift);
+                   const std::vector<std::int32_t>& trips, kit::Progress& progress, Drift& drift);
 
 }  // namespace m2m_transfer

@@ -57,7 +57,7 @@ Task collect(Problem& problem, const std::vector<DistributedMesh>& meshes, const
 
 }  // namespace
 
-Task measure(Problem& problem, GroupProxy<Gauge> gauge, apps::Progress& progress) {
+Task measure(Problem& problem, GroupProxy<Gauge> gauge, kit::Progress& progress) {
   const Footprint sent_before = co_await gauge.reduce<&Gauge::read>();
 
   progress.phase("partition");

@@ -3,9 +3,9 @@
 // problem collects its results.
 #pragma once
 
+#include "apps/kit/progress.hpp"
 #include "apps/m2m_transfer/input/problem.hpp"
 #include "apps/m2m_transfer/run/footprint.hpp"
-#include "apps/progress.hpp"
 #include "runtime/runtime.hpp"
 
 namespace m2m_transfer {
@@ -13,6 +13,6 @@ namespace m2m_transfer {
 /// Fills in the reports, and if the problem collects its results the fields of the meshes that were
 /// written, with an additional field "status". Destroys the chares of the meshes at the end.
 /// `gauge`: a group that exists on all PEs. `progress` shows the phases.
-Task measure(Problem& problem, GroupProxy<Gauge> gauge, apps::Progress& progress);
+Task measure(Problem& problem, GroupProxy<Gauge> gauge, kit::Progress& progress);
 
 }  // namespace m2m_transfer

@@ -1,8 +1,8 @@
 // The meshes of a run in the machine: handles to place, move and gather them.
 #pragma once
 
+#include "apps/kit/progress.hpp"
 #include "apps/m2m_transfer/input/problem.hpp"
-#include "apps/progress.hpp"
 #include "m2m/transfer.hpp"
 #include "runtime/runtime.hpp"
 

@@ -13,7 +13,7 @@ void keep_least(double& least, double value) {
 
 }  // namespace
 
-GraphRun::GraphRun(Problem& problem, std::vector<DistributedMesh>& meshes, apps::Progress& progress)
+GraphRun::GraphRun(Problem& problem, std::vector<DistributedMesh>& meshes, kit::Progress& progress)
     : problem_(problem), meshes_(meshes), progress_(progress) {
   TransferOptions options;
   options.voxel_size = problem.voxel;

@@ -19,7 +19,7 @@ struct PairAudit {
 class GraphRun {
  public:
   /// `problem` and `meshes` outlive the run, and the meshes move with the steps.
-  GraphRun(Problem& problem, std::vector<DistributedMesh>& meshes, apps::Progress& progress);
+  GraphRun(Problem& problem, std::vector<DistributedMesh>& meshes, kit::Progress& progress);
 
   /// Searches all pairs at once.
   Task search();
@@ -54,7 +54,7 @@ class GraphRun {
 
   Problem& problem_;
   std::vector<DistributedMesh>& meshes_;
-  apps::Progress& progress_;
+  kit::Progress& progress_;
   std::vector<Transfer> transfers_;
   std::vector<SearchSummary> found_;
   std::vector<PhaseSeconds> seconds_;

@@ -1,9 +1,9 @@
 // m2m_stability [SOURCE [TARGET]]: transfers between extreme meshes and points, and the same of the
 // meshes given; m2m_transfer --stability runs it. Exit code 1 if a row fails.
+#include "apps/kit/write_file.hpp"
 #include "apps/m2m_transfer/contradictions.hpp"
 #include "apps/m2m_transfer/options.hpp"
 #include "apps/m2m_transfer/stability/rows.hpp"
-#include "apps/plot/write_file.hpp"
 #include "m2m/read_mesh.hpp"
 #include "runtime/command_line.hpp"
 #include "runtime/runtime.hpp"
@@ -43,16 +43,16 @@ int run(Setup& setup, int argc, char** argv) {
   if (!read_options(line, options, argc, argv)) return 0;
   (void)file_names(options, setup.options.trace);
   refuse_contradictions(options, Mode::stability);
-  plot::require_writable("--json", options.json);
+  kit::require_writable("--json", options.json);
   Ways ways{.policy = parse_policy(options.policies.front())};
   if (options.partition_is_given)
     ways.partition = parse_partition_method(options.request.partition);
-  apps::Progress progress(setup.machine->process().value == 0 ? stderr : nullptr);
+  kit::Progress progress(setup.machine->process().value == 0 ? stderr : nullptr);
   const std::vector<Row> rows = run_cases(setup, cases_for(options.request), ways, progress);
   progress.clear();
   if (setup.machine->process().value != 0) return 0;
   tess::print_text(table(rows));
-  if (!options.json.empty()) plot::write_file(options.json, json(rows));
+  if (!options.json.empty()) kit::write_file(options.json, json(rows));
   return std::ranges::all_of(rows, &Row::ok) ? 0 : 1;
 }
 

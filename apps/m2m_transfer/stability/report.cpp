@@ -1,5 +1,5 @@
+#include "apps/kit/json.hpp"
 #include "apps/m2m_transfer/stability/rows.hpp"
-#include "apps/plot/json.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -31,7 +31,7 @@ std::string table(const std::vector<Row>& rows) {
 }
 
 std::string json(const std::vector<Row>& rows) {
-  plot::Json whole;
+  kit::Json whole;
   for (const Row& row : rows)
     whole["rows"].push_back({{"case", row.name},
                              {"parameter", row.parameter},
@@ -45,7 +45,7 @@ std::string json(const std::vector<Row>& rows) {
                              {"same_bits", row.same_bits},
                              {"refused", row.note},
                              {"ok", row.ok}});
-  return plot::json_text(whole);
+  return kit::json_text(whole);
 }
 
 }  // namespace m2m_transfer::stability

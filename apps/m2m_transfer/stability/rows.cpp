@@ -61,7 +61,7 @@ bool has_wrong_value_outside(const OutsidePolicy& policy, double value) {
 
 /// One run of all cases. Cases that are refused have no answer.
 Task run_all(const std::vector<Case>& cases, std::int32_t n_parts, const Ways& ways,
-             apps::Progress& progress, Answers& answers) {
+             kit::Progress& progress, Answers& answers) {
   for (std::size_t k = 0; k < cases.size(); ++k) {
     progress.part(k + 1, cases.size());
     if (!refusal(cases[k]).empty()) continue;
@@ -70,7 +70,7 @@ Task run_all(const std::vector<Case>& cases, std::int32_t n_parts, const Ways& w
 }
 
 Task run_parts(const std::vector<Case>& cases, const std::vector<std::int32_t>& parts,
-               const Ways& ways, apps::Progress& progress, Answers& answers) {
+               const Ways& ways, kit::Progress& progress, Answers& answers) {
   for (const std::int32_t n_parts : parts) {
     progress.phase(n_parts == 1 ? "one part" : "several parts");
     co_await run_all(cases, n_parts, ways, progress, answers);
@@ -147,7 +147,7 @@ Row judge(const Case& c, const std::vector<Answer>& answers, const Answer* befor
 }
 
 std::vector<Row> run_cases(Setup& setup, const std::vector<Case>& cases, const Ways& ways,
-                           apps::Progress& progress) {
+                           kit::Progress& progress) {
   Answers answers(cases.size());
   // Named: the coroutines refer to them.
   const std::vector<std::int32_t> parts{1, 6, 16}, several{6, 16};

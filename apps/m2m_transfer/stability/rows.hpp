@@ -1,8 +1,8 @@
 // Runs the cases of the stability report on several machines, and judges them.
 #pragma once
 
+#include "apps/kit/progress.hpp"
 #include "apps/m2m_transfer/stability/cases.hpp"
-#include "apps/progress.hpp"
 #include "m2m/partition_method.hpp"
 #include "m2m/policy.hpp"
 #include "m2m/status.hpp"
@@ -54,7 +54,7 @@ TaskOf<Answer> answer_of(const Case& c, std::int32_t n_parts, const Ways& ways);
 /// All cases on `setup` with 1, 6 and 16 parts, and if it has one process, on simulated machines of
 /// 6 and 16 PEs. Rows stay empty on processes other than the first.
 [[nodiscard]] std::vector<Row> run_cases(Setup& setup, const std::vector<Case>& cases,
-                                         const Ways& ways, apps::Progress& progress);
+                                         const Ways& ways, kit::Progress& progress);
 
 [[nodiscard]] std::string table(const std::vector<Row>& rows);
 [[nodiscard]] std::string json(const std::vector<Row>& rows);

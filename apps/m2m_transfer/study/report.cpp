@@ -1,9 +1,9 @@
+#include "apps/kit/chart.hpp"
+#include "apps/kit/quoting.hpp"
+#include "apps/kit/write_file.hpp"
 #include "apps/m2m_transfer/output/table.hpp"
 #include "apps/m2m_transfer/study/checks.hpp"
 #include "apps/m2m_transfer/study/study.hpp"
-#include "apps/plot/chart.hpp"
-#include "apps/plot/quoting.hpp"
-#include "apps/plot/write_file.hpp"
 #include "runtime/core/sort_unique.hpp"
 
 #include <algorithm>
@@ -33,10 +33,10 @@ std::string variant(const Study& study, const std::string& kind, const std::stri
 }
 
 /// A line of slope 2 below all points of the chart, as a reference for second order.
-plot::Series second_order(const plot::Chart& chart) {
+kit::Series second_order(const kit::Chart& chart) {
   double low = 0, high = 0, c = 0;
-  for (const plot::Series& series : chart.series) {
-    for (const plot::Point& p : series.points) {
+  for (const kit::Series& series : chart.series) {
+    for (const kit::Point& p : series.points) {
       if (!(p.x > 0) || !(p.y > 0)) continue;
       low = low == 0 ? p.x : std::min(low, p.x);
       high = std::max(high, p.x);
@@ -46,13 +46,13 @@ plot::Series second_order(const plot::Chart& chart) {
   }
   if (c == 0) return {};
   c *= 0.7;
-  return {"order 2", {{low, c * low * low}, {high, c * high * high}}, plot::Style::dashes};
+  return {"order 2", {{low, c * low * low}, {high, c * high * high}}, kit::Style::dashes};
 }
 
 enum class Against { seconds, edge };
 
-plot::Chart chart_of(const Study& study, Against against) {
-  plot::Chart chart{
+kit::Chart chart_of(const Study& study, Against against) {
+  kit::Chart chart{
       .title = against == Against::seconds ? "transfer: error against run time"
                                            : "transfer: error against the source's edge length",
       .x_label = against == Against::seconds
@@ -66,7 +66,7 @@ plot::Chart chart_of(const Study& study, Against against) {
     const std::size_t f = at++ % study.reports.front().fields.size();
     if (trend.exact) continue;  // rounding errors would dominate the axis
     const std::string name = trend.field + variant(study, trend.kind, trend.policy);
-    plot::Series l2{name + ": L2"}, linf{name + ": Linf"};
+    kit::Series l2{name + ": L2"}, linf{name + ": Linf"};
     for (const TransferReport& r : study.reports) {
       if (r.policy != trend.policy || r.kind != trend.kind) continue;
       const double x = against == Against::seconds ? r.seconds.transfer() : r.source_edge;
@@ -79,7 +79,7 @@ plot::Chart chart_of(const Study& study, Against against) {
   if (against == Against::edge) {
     for (const TransferReport& r : study.reports) chart.x_ticks.push_back(r.source_edge);
     sort_unique(chart.x_ticks);
-    if (plot::Series line = second_order(chart); !line.points.empty())
+    if (kit::Series line = second_order(chart); !line.points.empty())
       chart.series.push_back(std::move(line));
   }
   return chart;
@@ -134,11 +134,11 @@ std::string table(const Study& study) {
 }
 
 std::string json(const Study& study) {
-  plot::Json whole = json_of(study.reports);
+  kit::Json whole = json_of(study.reports);
   whole["repeat"] = study.repeat;
-  whole["trends"] = plot::Json::array();
+  whole["trends"] = kit::Json::array();
   const auto number = [](const std::optional<double>& value) {
-    return value ? plot::Json(*value) : plot::Json();
+    return value ? kit::Json(*value) : kit::Json();
   };
   for (const Trend& t : trends(study))
     whole["trends"].push_back({{"field", t.field},
@@ -152,7 +152,7 @@ std::string json(const Study& study) {
   for (const Check& check : study.is_checked ? checks(study) : std::vector<Check>())
     whole["checks"].push_back(
         {{"what", check.what}, {"value", check.value}, {"limit", check.limit}, {"ok", check.ok()}});
-  return plot::json_text(whole);
+  return kit::json_text(whole);
 }
 
 std::string csv(const Study& study) {
@@ -167,8 +167,8 @@ std::string csv(const Study& study) {
           Text(out),
           "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}"
           ",{},{},{:016x}\n",
-          plot::csv_field(r.source), plot::csv_field(r.target), r.kind, plot::csv_field(r.policy),
-          plot::csv_field(field.name), r.source_edge, r.source_tets, r.targets, r.tally.counts[0],
+          kit::csv_field(r.source), kit::csv_field(r.target), r.kind, kit::csv_field(r.policy),
+          kit::csv_field(field.name), r.source_edge, r.source_tets, r.targets, r.tally.counts[0],
           r.tally.counts[1], r.tally.counts[2], r.tally.counts[3], field.norms.l2,
           field.norms.l2_relative, field.norms.rms, field.norms.linf, field.found.l2,
           field.found.l2_relative, field.found.rms, field.found.linf, r.tally.n_candidates,
@@ -179,10 +179,10 @@ std::string csv(const Study& study) {
 
 std::string write(const Study& study, const std::string& folder) {
   const std::string stem = folder + "/";
-  plot::write_file(stem + "study.csv", csv(study));
-  plot::write_file(stem + "study.json", json(study));
-  bool drawn = plot::write_svg(stem + "error_time.svg", chart_of(study, Against::seconds));
-  drawn = plot::write_svg(stem + "error_edge.svg", chart_of(study, Against::edge)) && drawn;
+  kit::write_file(stem + "study.csv", csv(study));
+  kit::write_file(stem + "study.json", json(study));
+  bool drawn = kit::write_svg(stem + "error_time.svg", chart_of(study, Against::seconds));
+  drawn = kit::write_svg(stem + "error_edge.svg", chart_of(study, Against::edge)) && drawn;
   return fmt::format("written: {}study.csv, study.json, error_time and error_edge as {}\n", stem,
                      drawn ? "svg and csv" : "csv");
 }

@@ -1,10 +1,10 @@
 #include "apps/m2m_transfer/study/steps.hpp"
 
+#include "apps/kit/chart.hpp"
+#include "apps/kit/json.hpp"
+#include "apps/kit/quoting.hpp"
+#include "apps/kit/write_file.hpp"
 #include "apps/m2m_transfer/run/steps.hpp"
-#include "apps/plot/chart.hpp"
-#include "apps/plot/json.hpp"
-#include "apps/plot/quoting.hpp"
-#include "apps/plot/write_file.hpp"
 
 #include <algorithm>
 #include <array>
@@ -16,7 +16,7 @@ namespace {
 constexpr std::array counts{1, 2, 5, 10, 20, 50, 100};
 
 Task run_steps(Problem& problem, std::vector<DistributedMesh>& meshes, std::int32_t steps,
-               apps::Progress& progress, double& seconds) {
+               kit::Progress& progress, double& seconds) {
   problem.steps = steps;
   const Time begin = now();
   GraphRun graph(problem, meshes, progress);
@@ -34,7 +34,7 @@ TaskOf<std::uint64_t> hash_of(const Problem& problem, const std::vector<Distribu
 
 }  // namespace
 
-Task measure_steps(Problem& problem, std::int32_t repeat, apps::Progress& progress,
+Task measure_steps(Problem& problem, std::int32_t repeat, kit::Progress& progress,
                    std::vector<StepsRow>& rows) {
   progress.phase("partition");
   std::vector<DistributedMesh> meshes = co_await place(problem, problem.kind, problem.chares());
@@ -69,7 +69,7 @@ std::string table(const std::vector<StepsRow>& rows) {
 }
 
 std::string json(const std::vector<StepsRow>& rows) {
-  plot::Json whole;
+  kit::Json whole;
   for (const StepsRow& row : rows)
     whole["rows"].push_back({{"source", row.source},
                              {"target", row.target},
@@ -78,32 +78,32 @@ std::string json(const std::vector<StepsRow>& rows) {
                              {"seconds_per_step_again", row.again},
                              {"same_bits", row.ok()},
                              {"result_hash", fmt::format("{:016x}", row.hash)}});
-  return plot::json_text(whole);
+  return kit::json_text(whole);
 }
 
 std::string write(const std::vector<StepsRow>& rows, const std::string& folder) {
   std::string csv = "source,target,steps,kept,again,same_bits,result_hash\n";
-  plot::Chart chart{.title = "the time of a step with donors that are kept",
-                    .x_label = "steps",
-                    .y_label = "seconds per step",
-                    .x_log = true,
-                    .y_log = true};
+  kit::Chart chart{.title = "the time of a step with donors that are kept",
+                   .x_label = "steps",
+                   .y_label = "seconds per step",
+                   .x_log = true,
+                   .y_log = true};
   for (const StepsRow& row : rows) {
-    csv += fmt::format("{},{},{},{},{},{},{:016x}\n", plot::csv_field(row.source),
-                       plot::csv_field(row.target), row.steps, row.kept, row.again,
+    csv += fmt::format("{},{},{},{},{},{},{:016x}\n", kit::csv_field(row.source),
+                       kit::csv_field(row.target), row.steps, row.kept, row.again,
                        row.ok() ? "yes" : "no", row.hash);
     const std::string name = row.source + " -> " + row.target;
     if (chart.series.empty() || chart.series.back().name != name + ", again") {
       chart.series.push_back({name});
-      chart.series.push_back({name + ", again", {}, plot::Style::dashes});
+      chart.series.push_back({name + ", again", {}, kit::Style::dashes});
     }
     const auto x = static_cast<double>(row.steps);
     chart.series[chart.series.size() - 2].points.push_back({x, row.kept});
     chart.series.back().points.push_back({x, row.again});
   }
-  plot::write_file(folder + "/steps.csv", csv);
-  plot::write_file(folder + "/steps.json", json(rows));
-  const bool drawn = plot::write_svg(folder + "/steps.svg", chart);
+  kit::write_file(folder + "/steps.csv", csv);
+  kit::write_file(folder + "/steps.json", json(rows));
+  const bool drawn = kit::write_svg(folder + "/steps.svg", chart);
   return fmt::format("written: {}/steps.csv, steps.json{}\n", folder, drawn ? ", steps.svg" : "");
 }
 

@@ -2,8 +2,8 @@
 // in every step.
 #pragma once
 
+#include "apps/kit/progress.hpp"
 #include "apps/m2m_transfer/input/problem.hpp"
-#include "apps/progress.hpp"
 #include "runtime/runtime.hpp"
 
 #include <cstdint>
@@ -24,7 +24,7 @@ struct StepsRow {
 };
 
 /// Adds a row for 1, 2, 5, 10, 20, 50 and 100 steps. `repeat`: measurements; the fastest counts.
-Task measure_steps(Problem& problem, std::int32_t repeat, apps::Progress& progress,
+Task measure_steps(Problem& problem, std::int32_t repeat, kit::Progress& progress,
                    std::vector<StepsRow>& rows);
 
 [[nodiscard]] std::string table(const std::vector<StepsRow>& rows);

@@ -1,7 +1,7 @@
 #include "apps/m2m_transfer/study/study.hpp"
 
+#include "apps/kit/fit.hpp"
 #include "apps/m2m_transfer/input/lists.hpp"
-#include "apps/plot/fit.hpp"
 #include "m2m/kuhn.hpp"
 #include "runtime/core/error.hpp"
 
@@ -92,7 +92,7 @@ std::vector<Trend> trends(const Study& study) {
       return r.policy != first->policy || r.kind != first->kind;
     });
     for (std::size_t f = 0; f < first->fields.size(); ++f) {
-      std::vector<plot::Point> l2_edge, linf_edge, l2_seconds, linf_seconds;
+      std::vector<kit::Point> l2_edge, linf_edge, l2_seconds, linf_seconds;
       bool exact = true;
       for (auto r = first; r != last; ++r) {
         const ErrorNorms& norms = r->fields[f].norms;
@@ -104,10 +104,10 @@ std::vector<Trend> trends(const Study& study) {
       }
       Trend trend{first->fields[f].name, first->kind, first->policy, exact, {}, {}, {}, {}};
       if (!exact) {
-        trend.l2_of_edge = plot::fitted_power(l2_edge);
-        trend.linf_of_edge = plot::fitted_power(linf_edge);
-        trend.l2_of_seconds = plot::fitted_power(l2_seconds);
-        trend.linf_of_seconds = plot::fitted_power(linf_seconds);
+        trend.l2_of_edge = kit::fitted_power(l2_edge);
+        trend.linf_of_edge = kit::fitted_power(linf_edge);
+        trend.l2_of_seconds = kit::fitted_power(l2_seconds);
+        trend.linf_of_seconds = kit::fitted_power(linf_seconds);
       }
       all.push_back(std::move(trend));
     }

@@ -8,9 +8,9 @@
 //     A B                    A -> B and B -> A
 #pragma once
 
+#include "apps/kit/chart.hpp"
 #include "apps/m2m_transfer/input/problem.hpp"
 #include "apps/m2m_transfer/report.hpp"
-#include "apps/plot/chart.hpp"
 
 #include <cstdint>
 #include <optional>

@@ -1,8 +1,8 @@
 // The parts of the stability report. Private to it.
 #pragma once
 
+#include "apps/kit/worst.hpp"
 #include "apps/particles/stability/cases.hpp"
-#include "apps/worst.hpp"
 #include "collide/dn_field/made_field.hpp"
 #include "collide/dn_field/stepper.hpp"
 
@@ -10,10 +10,10 @@
 
 namespace tess::dn::stability {
 
-using apps::worsen;
+using kit::worsen;
 
 struct Rows {
-  std::vector<StabilityRow> rows;
+  std::vector<kit::Case> rows;
 
   void add(std::string name, std::string parameter, double value, double met, double tolerance) {
     rows.push_back(

@@ -1,6 +1,6 @@
 #include "apps/m2m_transfer/file_fields.hpp"
 
-#include "apps/worst.hpp"
+#include "apps/kit/worst.hpp"
 #include "m2m/field_file.hpp"
 #include "m2m/kuhn.hpp"
 #include "m2m/read_mesh.hpp"
@@ -63,7 +63,7 @@ std::string element_file(const Scratch& scratch, std::size_t n) {
 
 FileFieldsReport moved(const FileFieldsRequest& request, std::int32_t n_pes = 2) {
   FileFieldsReport report;
-  apps::Progress progress(nullptr);
+  kit::Progress progress(nullptr);
   Setup setup{make_threads_machine(n_pes), {}};
   const auto main = [&]() -> Task { report = co_await move_file_fields(request, progress); };
   REQUIRE(run(setup, main) == 0);
@@ -71,7 +71,7 @@ FileFieldsReport moved(const FileFieldsRequest& request, std::int32_t n_pes = 2)
 }
 
 Task attempt(const FileFieldsRequest& request, std::string* message) {
-  apps::Progress progress(nullptr);
+  kit::Progress progress(nullptr);
   try {
     co_await move_file_fields(request, progress);
   } catch (const Error& error) {
@@ -265,13 +265,13 @@ TEST_CASE("fields in elements are moved to elements at all steps, and written as
                   flux = file.tet_field(target, "flux", step);
       double error = 0;
       for (std::size_t t = 0; t < target.n_tets(); ++t)
-        apps::worsen(error,
-                     std::abs(q.values[t] - (flux.values[3 * t] - 2 * flux.values[3 * t + 2])));
+        kit::worsen(error,
+                    std::abs(q.values[t] - (flux.values[3 * t] - 2 * flux.values[3 * t + 2])));
       for (std::size_t t = 0; t < target.n_tets(); ++t) {
         double x = 0;
         for (const VertexId v : target.tets[t])
           x += target.points[static_cast<std::size_t>(v)][0] / 4;
-        apps::worsen(error, std::abs(flux.values[3 * t] - static_cast<double>(step + 1) * x));
+        kit::worsen(error, std::abs(flux.values[3 * t] - static_cast<double>(step + 1) * x));
       }
       CHECK(error < 1e-11);
       std::uint64_t hash = result_hash(file.vertex_field(target, "temp", step).values);

@@ -1,7 +1,7 @@
 // What runs of scenes must show: energies that rules keep, particles that go through a surface or
 // cannot, and the paper's three regimes of flow around a shaft.
+#include "apps/kit/worst.hpp"
 #include "apps/particles/output/report.hpp"
-#include "apps/worst.hpp"
 #include "collide/dn_field/shapes.hpp"
 #include "tests/apps/particles/run_scene.hpp"
 
@@ -217,7 +217,7 @@ TEST_CASE(
       const Ran ran = run_scene(scene, "--pes=1");
       const double start = ran.result.rows.front().measured.energy();
       double most = start;
-      for (const Row& row : ran.result.rows) apps::worsen(most, row.measured.energy());
+      for (const Row& row : ran.result.rows) kit::worsen(most, row.measured.energy());
       INFO(look_up << ", restitution " << restitution << ": energy " << start << ", at most "
                    << most);
       CHECK(most <= start * (1 + 1e-9));
@@ -242,8 +242,8 @@ TEST_CASE("what slides on the ground does not slide into the house that stands o
   for (const Sample& sample : ran.result.trajectories.back().samples) {
     const Vec3 p = sample.position;
     const double below = -p.z, in_house = std::min({p.x - 2, 4 - p.x, 2 - std::abs(p.y), 3 - p.z});
-    apps::worsen(deepest, std::max(below, in_house));
-    apps::worsen(deepest, 0 * (p.x + p.y + p.z));
+    kit::worsen(deepest, std::max(below, in_house));
+    kit::worsen(deepest, 0 * (p.x + p.y + p.z));
   }
   CHECK(deepest < 0.5 * cell);  // of the corner between them a voxel sees one face
   CHECK(ran.last().tunnelled == 0);

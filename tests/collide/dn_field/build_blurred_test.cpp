@@ -1,4 +1,4 @@
-#include "apps/worst.hpp"
+#include "apps/kit/worst.hpp"
 #include "collide/dn_field/build/voxels.hpp"
 #include "collide/dn_field/build_field.hpp"
 #include "collide/dn_field/shapes.hpp"
@@ -83,7 +83,7 @@ std::pair<double, double> angles_off(const Field& field, double core) {
   for_each_voxel(field.grid, [&](std::size_t at, Vec3 p) {
     if (field.normal[at] == no_normal || norm(p) < core) return;
     const double angle = angle_between(decoded(field.normal[at]), direction(p)) / degree;
-    apps::worsen(worst, angle);
+    kit::worsen(worst, angle);
     sum += angle;
     ++count;
   });

@@ -1,4 +1,4 @@
-#include "apps/worst.hpp"
+#include "apps/kit/worst.hpp"
 #include "collide/dn_field/build_field.hpp"
 #include "collide/dn_field/bvh.hpp"
 #include "collide/dn_field/normal_code.hpp"
@@ -27,7 +27,7 @@ TEST_CASE("distances to a box are those of the formula at every voxel", "[dn_fie
   const Field field = build_field(make_box(half), grid_around({-half, half}, 33, 0.4));
   double worst = 0;
   for_each_voxel(field.grid, [&](std::size_t at, Vec3 p) {
-    apps::worsen(worst, std::abs(static_cast<double>(field.distance[at]) - box_distance(p, half)));
+    kit::worsen(worst, std::abs(static_cast<double>(field.distance[at]) - box_distance(p, half)));
   });
   CHECK(worst < 1e-6);
 }
@@ -91,7 +91,7 @@ TEST_CASE("normals of a sphere are radial and of unit length", "[dn_field]") {
     const Normal n = decode_normal(field.normal[at]);
     const Vec3 normal{static_cast<double>(n.x), static_cast<double>(n.y), static_cast<double>(n.z)};
     CHECK(std::abs(norm(normal) - 1) < 1e-6);
-    apps::worsen(worst, norm(normal - direction(p)));
+    kit::worsen(worst, norm(normal - direction(p)));
   });
   CHECK(worst <
         0.06);  // half a facet's opening angle is 0.025, times 1/sqrt(2) … near a vertex twice that

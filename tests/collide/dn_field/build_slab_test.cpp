@@ -1,4 +1,4 @@
-#include "apps/worst.hpp"
+#include "apps/kit/worst.hpp"
 #include "collide/dn_field/build_field.hpp"
 #include "collide/dn_field/bvh.hpp"
 #include "collide/dn_field/shapes.hpp"
@@ -37,7 +37,7 @@ TEST_CASE("distances to any triangles, degenerate ones too, are those of brute f
     for_each_voxel(grid, [&](std::size_t at, Vec3 p) {
       const double truth =
           std::min(brute_force(surface, p), static_cast<double>(cut_off(thickness)));
-      apps::worsen(worst, std::abs(static_cast<double>(field.distance[at]) - truth));
+      kit::worsen(worst, std::abs(static_cast<double>(field.distance[at]) - truth));
     });
     INFO("seed " << seed);
     CHECK(worst < 3e-7);
@@ -136,7 +136,7 @@ TEST_CASE("off the medial axis the distance between voxels converges with order 
       if (std::abs(truth) > 0.2) continue;  // the medial axis is a point, a circle, a line: far
       const Vec3 g = (1 / field.grid.cell) * (p - field.grid.origin);
       if (g.x < 0 || g.y < 0 || g.z < 0 || g.x >= n - 1 || g.y >= n - 1 || g.z >= n - 1) continue;
-      apps::worsen(worst, std::abs(trilinear(field, p) - truth));
+      kit::worsen(worst, std::abs(trilinear(field, p) - truth));
     }
     return worst;
   };

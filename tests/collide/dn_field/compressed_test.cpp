@@ -1,6 +1,6 @@
 #include "collide/dn_field/compressed.hpp"
 
-#include "apps/worst.hpp"
+#include "apps/kit/worst.hpp"
 #include "collide/dn_field/build_field.hpp"
 #include "collide/dn_field/look_up.hpp"
 #include "collide/dn_field/shapes.hpp"
@@ -32,7 +32,7 @@ ErrorBound worst_seen(const Field& flat, const Field& field) {
   look_up(field, LookUp::nearest, {at.x, at.y, at.z}, {distance, {}, {}, {}});
   ErrorBound worst;
   for (std::size_t v = 0; v < n; ++v)
-    apps::worsen(worst.distance, static_cast<double>(std::abs(distance[v] - flat.distance[v])));
+    kit::worsen(worst.distance, static_cast<double>(std::abs(distance[v] - flat.distance[v])));
   look_up(field, LookUp::nearest, {at.x, at.y, at.z}, {alone, normal.x, normal.y, normal.z});
   CHECK(alone == distance);
   Columns again(n);
@@ -43,7 +43,7 @@ ErrorBound worst_seen(const Field& flat, const Field& field) {
     const Vec3 found{static_cast<double>(normal.x[v]), static_cast<double>(normal.y[v]),
                      static_cast<double>(normal.z[v])};
     if (std::abs(norm(found) - 1) > 1e-6) worst.angle = HUGE_VAL;
-    apps::worsen(worst.angle, angle_between(found, decoded(flat.normal[v])));
+    kit::worsen(worst.angle, angle_between(found, decoded(flat.normal[v])));
   }
   return worst;
 }

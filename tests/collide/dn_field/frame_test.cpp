@@ -1,6 +1,6 @@
 #include "collide/dn_field/frame.hpp"
 
-#include "apps/worst.hpp"
+#include "apps/kit/worst.hpp"
 #include "runtime/core/error.hpp"
 #include "tests/support/catch.hpp"
 
@@ -14,8 +14,8 @@ double deviation(const Frame& frame) {  // from orthonormal, right-handed axes
   double worst = 0;
   for (std::size_t i = 0; i < 3; ++i)
     for (std::size_t j = 0; j < 3; ++j)
-      apps::worsen(worst, std::abs(dot(frame.axes[i], frame.axes[j]) - (i == j ? 1 : 0)));
-  apps::worsen(worst, norm(cross(frame.axes[0], frame.axes[1]) - frame.axes[2]));
+      kit::worsen(worst, std::abs(dot(frame.axes[i], frame.axes[j]) - (i == j ? 1 : 0)));
+  kit::worsen(worst, norm(cross(frame.axes[0], frame.axes[1]) - frame.axes[2]));
   return worst;
 }
 

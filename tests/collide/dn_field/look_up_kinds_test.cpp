@@ -1,4 +1,4 @@
-#include "apps/worst.hpp"
+#include "apps/kit/worst.hpp"
 #include "collide/dn_field/build_field.hpp"
 #include "collide/dn_field/look_up.hpp"
 #include "collide/dn_field/made_field.hpp"
@@ -40,9 +40,9 @@ TEST_CASE("tangent and trilinear look-ups of a plane are exact", "[dn_field][loo
     asked.look_up(field, kind);
     double worst = 0, turned = 0;
     for (std::size_t p = 0; p < asked.x.size(); ++p) {
-      apps::worsen(worst,
-                   std::abs(static_cast<double>(asked.distance[p]) - dot(normal, asked.point(p))));
-      apps::worsen(turned, norm(asked.normal(p) - normal));
+      kit::worsen(worst,
+                  std::abs(static_cast<double>(asked.distance[p]) - dot(normal, asked.point(p))));
+      kit::worsen(turned, norm(asked.normal(p) - normal));
     }
     CHECK(worst < (kind == LookUp::nearest ? 0.87 * field.grid.cell : 1e-5));
     CHECK(turned < 1e-4);
@@ -61,9 +61,9 @@ TEST_CASE("off the medial axis errors fall with the cell: order 1 by nearest, 2 
       for (std::size_t p = 0; p < asked.x.size(); ++p) {
         const Vec3 at = asked.point(p);
         if (norm(at) < 0.4) continue;
-        apps::worsen(error[fine],
-                     std::abs(static_cast<double>(asked.distance[p]) - (norm(at) - 0.7)));
-        apps::worsen(turned[fine], norm(asked.normal(p) - direction(at)));
+        kit::worsen(error[fine],
+                    std::abs(static_cast<double>(asked.distance[p]) - (norm(at) - 0.7)));
+        kit::worsen(turned[fine], norm(asked.normal(p) - direction(at)));
         CHECK(std::abs(norm(asked.normal(p)) - 1) < 1e-6);
       }
     }

@@ -1,5 +1,5 @@
 // Objects that move far and turn in a step: no particle passes their surfaces.
-#include "apps/worst.hpp"
+#include "apps/kit/worst.hpp"
 #include "collide/dn_field/made_field.hpp"
 #include "collide/dn_field/stepper.hpp"
 #include "tests/support/catch.hpp"
@@ -30,7 +30,7 @@ double furthest(const Particles& particles, const Object& room) {
   double most = 0;
   for (std::size_t p = 0; p < particles.size(); ++p) {
     const Vec3 x = room.frame.to_object(particles.position(p));
-    for (const double one : {x.x, x.y, x.z}) apps::worsen(most, std::abs(one));
+    for (const double one : {x.x, x.y, x.z}) kit::worsen(most, std::abs(one));
   }
   return most;
 }
@@ -88,7 +88,7 @@ TEST_CASE("a box that ploughs through particles at rest takes them along", "[dn_
         advance(objects, dt, n_steps);
         double lowest = HUGE_VAL;
         for (std::size_t p = 0; p < particles.size(); ++p)
-          apps::lower(lowest, objects[0].frame.to_object(particles.position(p)).z);
+          kit::lower(lowest, objects[0].frame.to_object(particles.position(p)).z);
         INFO("look-up " << static_cast<int>(look_up) << ", speed " << speed << ", tilt " << tilt);
         CHECK(lowest > -field.grid.cell);
       }

@@ -1,7 +1,7 @@
 #include "collide/dn_field/rules.hpp"
 
+#include "apps/kit/worst.hpp"
 #include "apps/particles/stability/parts.hpp"
-#include "apps/worst.hpp"
 #include "collide/dn_field/build_field.hpp"
 #include "collide/dn_field/shapes.hpp"
 #include "runtime/core/error.hpp"
@@ -235,7 +235,7 @@ TEST_CASE("a spring adds no energy, by any look-up and stiffness", "[dn_field][r
         make_stepper(rules, 0.01).run(particles.span(), {&object, 1}, 0, 300);
         double most = 0;
         for (std::size_t p = 0; p < particles.size(); ++p)
-          apps::worsen(most, norm(particles.velocity(p)) / norm(before.velocity(p)));
+          kit::worsen(most, norm(particles.velocity(p)) / norm(before.velocity(p)));
         INFO("field " << &field - fields.data() << ", look-up " << static_cast<int>(look_up)
                       << ", stiffness " << stiffness);
         CHECK(most < 1 + 1e-4);

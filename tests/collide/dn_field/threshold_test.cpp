@@ -1,6 +1,6 @@
 // Swept impacts that stop particles before the surface: by a threshold, or by the clearance of an
 // open surface.
-#include "apps/worst.hpp"
+#include "apps/kit/worst.hpp"
 #include "collide/dn_field/made_field.hpp"
 #include "collide/dn_field/stepper.hpp"
 #include "tests/support/catch.hpp"
@@ -83,8 +83,8 @@ Errors shoot(const Field& ball, const Frame& frame, LookUp look_up, double thres
     const Vec3 n = direction(place - then.position);
     const Vec3 u = frame.velocity + ball_radius * frame.scale_rate * n;
     const Vec3 after = velocity - 2 * dot(velocity - u, n) * n;
-    apps::worsen(errors.place, norm(here[1].place - place));
-    apps::worsen(errors.angle, norm(particles.velocity(p) - after) / norm(velocity));
+    kit::worsen(errors.place, norm(here[1].place - place));
+    kit::worsen(errors.angle, norm(particles.velocity(p) - after) / norm(velocity));
   }
   return errors;
 }

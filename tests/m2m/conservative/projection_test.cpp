@@ -1,6 +1,6 @@
 #include "m2m/conservative/projection.hpp"
 
-#include "apps/worst.hpp"
+#include "apps/kit/worst.hpp"
 #include "m2m/kuhn.hpp"
 #include "m2m/partition/partition.hpp"
 #include "m2m/partition/split.hpp"
@@ -152,7 +152,7 @@ TEST_CASE("100 round trips conserve a Gaussian to 1e-12, where linear interpolat
     double worst = 0;
     for (int trip = 0; trip < 100; ++trip) {
       field = back(there(field, form), form);
-      apps::worsen(worst, std::abs(integral(a, field) / want - 1));
+      kit::worsen(worst, std::abs(integral(a, field) / want - 1));
     }
     const double peak_left = peak(field) / peak(start);
     CAPTURE(static_cast<int>(form), worst, peak_left);

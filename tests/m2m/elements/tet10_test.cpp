@@ -1,6 +1,6 @@
 #include "m2m/elements/tet10.hpp"
 
-#include "apps/worst.hpp"
+#include "apps/kit/worst.hpp"
 #include "m2m/kuhn.hpp"
 #include "tests/m2m/overlapping.hpp"
 #include "tests/m2m/samples.hpp"
@@ -77,8 +77,7 @@ double worst(const TetMesh& mesh, const std::vector<Point>& targets, std::size_t
   Values got(targets.size());
   apply(rows, sampled(mesh.points, f), 1, got);
   double error = 0;
-  for (std::size_t i = 0; i < got.size(); ++i)
-    apps::worsen(error, std::abs(got[i] - f(targets[i])));
+  for (std::size_t i = 0; i < got.size(); ++i) kit::worsen(error, std::abs(got[i] - f(targets[i])));
   return error;
 }
 

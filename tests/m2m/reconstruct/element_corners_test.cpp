@@ -2,7 +2,7 @@
 // and limited to what a loop over all elements finds around.
 #include "m2m/reconstruct/element_corners.hpp"
 
-#include "apps/worst.hpp"
+#include "apps/kit/worst.hpp"
 #include "runtime/core/hash.hpp"
 #include "tests/m2m/element_meshes.hpp"
 #include "tests/m2m/samples.hpp"
@@ -75,7 +75,7 @@ TEST_CASE("a linear field has its own values at the corners of all types of elem
     for (std::size_t i = 0; i < got.size(); ++i) {
       const VertexId v = elements.mesh.tets[i / 4][i % 4];
       const double want = linear_at(elements.mesh.points[static_cast<std::size_t>(v)]);
-      apps::worsen(error, std::abs(got[i] - want));
+      kit::worsen(error, std::abs(got[i] - want));
     }
     CHECK(error < 1e-12);
     // The same values in meshes whose volumes times lengths leave the range of double.
@@ -86,8 +86,7 @@ TEST_CASE("a linear field has its own values at the corners of all types of elem
         for (double& x : p) x = std::ldexp(x, exponent);
       const Values there = scaled.corners(values, CornerLimit::none);
       double change = 0;
-      for (std::size_t i = 0; i < got.size(); ++i)
-        apps::worsen(change, std::abs(there[i] - got[i]));
+      for (std::size_t i = 0; i < got.size(); ++i) kit::worsen(change, std::abs(there[i] - got[i]));
       CHECK(change < 1e-12);
       CHECK(std::ranges::none_of(there, [](double x) { return std::isnan(x); }));
     }
@@ -105,8 +104,8 @@ TEST_CASE("a single layer of elements, flat up to rounding or curved, has values
       double error = 0;
       for (std::size_t i = 0; i < got.size(); ++i) {
         const VertexId v = elements.mesh.tets[i / 4][i % 4];
-        apps::worsen(error,
-                     std::abs(got[i] - wave(elements.mesh.points[static_cast<std::size_t>(v)])));
+        kit::worsen(error,
+                    std::abs(got[i] - wave(elements.mesh.points[static_cast<std::size_t>(v)])));
       }
       CHECK(error < (limit == CornerLimit::none ? 0.1 : 0.2));
     }

@@ -1,6 +1,6 @@
 #include "m2m/reconstruct/gradients.hpp"
 
-#include "apps/worst.hpp"
+#include "apps/kit/worst.hpp"
 #include "m2m/kuhn.hpp"
 #include "m2m/reconstruct/second_order.hpp"
 #include "tests/m2m/overlapping.hpp"
@@ -29,7 +29,7 @@ double worst(const std::vector<Point>& got, std::span<const Point> at,
   for (std::size_t v = 0; v < got.size(); ++v) {
     const Point g = want(at[v]);
     for (std::size_t k = 0; k < 3; ++k) {
-      apps::worsen(error, std::abs(got[v][k] - g[k]));
+      kit::worsen(error, std::abs(got[v][k] - g[k]));
       largest = std::max(largest, std::abs(g[k]));
     }
   }
@@ -94,7 +94,7 @@ TEST_CASE("gradients follow scale, aspect and place of the mesh", "[m2m][reconst
     double error = 0;
     for (std::size_t v = 0; v < got.size(); ++v)
       for (std::size_t k = 0; k < 3; ++k)
-        apps::worsen(error, std::abs(got[v][k] * factor[k] - want[v][k]));
+        kit::worsen(error, std::abs(got[v][k] * factor[k] - want[v][k]));
     CAPTURE(factor, shift);
     CHECK(error < tolerance);
   };

@@ -1,6 +1,6 @@
 #include "m2m/reconstruct/second_order.hpp"
 
-#include "apps/worst.hpp"
+#include "apps/kit/worst.hpp"
 #include "m2m/kuhn.hpp"
 #include "m2m/reconstruct/gradients.hpp"
 #include "tests/m2m/overlapping.hpp"
@@ -72,7 +72,7 @@ TEST_CASE("order 2.8 or better by recovered gradients, 2.0 by linear interpolati
       second.push_back(rms(got, want));
       linear.push_back(rms(by_rows, want));
       double worst = 0;
-      for (std::size_t i = 0; i < got.size(); ++i) apps::worsen(worst, std::abs(got[i] - want[i]));
+      for (std::size_t i = 0; i < got.size(); ++i) kit::worsen(worst, std::abs(got[i] - want[i]));
       second_worst.push_back(worst);
     }
     CAPTURE(bent, second, linear, second_worst);

@@ -7,7 +7,7 @@
 using namespace collide_scene;
 
 TEST_CASE("every voxel size of the study gives the same pairs", "[apps][collide_scene]") {
-  apps::Progress progress(nullptr);
+  kit::Progress progress(nullptr);
   const Scene scene = make_scene("planes:4096");
   const std::vector<StudyRow> rows = study(scene, {}, progress);
   REQUIRE(rows.size() == 16);
@@ -27,7 +27,7 @@ TEST_CASE("every voxel size of the study gives the same pairs", "[apps][collide_
 
 TEST_CASE("the study compares with the voxel size of the library, whatever the options give",
           "[apps][collide_scene]") {
-  apps::Progress progress(nullptr);
+  kit::Progress progress(nullptr);
   const Scene scene = make_scene("planes:4096");
   const std::vector<StudyRow> expected = study(scene, {}, progress);
   Options options;
@@ -44,7 +44,7 @@ TEST_CASE("the study compares with the voxel size of the library, whatever the o
 }
 
 TEST_CASE("a study in which one voxel size loses a pair does not agree", "[apps][collide_scene]") {
-  apps::Progress progress(nullptr);
+  kit::Progress progress(nullptr);
   std::vector<StudyRow> rows = study(make_scene("boxes:500"), {}, progress);
   REQUIRE(rows.size() == 8);
   CHECK(agrees(rows));

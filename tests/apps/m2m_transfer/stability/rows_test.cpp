@@ -15,7 +15,7 @@ namespace {
 
 std::vector<Row> rows_of(const std::vector<Case>& cases, const Ways& ways = {}) {
   Setup setup{make_threads_machine(2), {}};
-  apps::Progress progress(nullptr);
+  kit::Progress progress(nullptr);
   return run_cases(setup, cases, ways, progress);
 }
 

@@ -1,0 +1,261 @@
+// Reads back the files of the plot library: the CSV has the data bit for bit; the SVG is
+// well-formed and has a curve per series, for any name of a series.
+#include "apps/kit/chart.hpp"
+
+#include "apps/kit/file_names.hpp"
+#include "apps/kit/quoting.hpp"
+#include "apps/kit/timeline.hpp"
+#include "apps/kit/write_file.hpp"
+#include "tests/apps/xml.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/scratch.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <limits>
+
+using namespace kit;
+using tess::test::message_of;
+using tess::test::read_xml;
+using tess::test::Scratch;
+using tess::test::slurp;
+using tess::test::XmlElement;
+
+namespace {
+
+constexpr const char* wild = "a&b <c> \"d\", 'e' \\n _x^y{z} @k %d `date` &amp; ]]> é #;";
+
+/// The fields of each line of a CSV file (RFC 4180).
+std::vector<std::vector<std::string>> read_csv(const std::string& text) {
+  std::vector<std::vector<std::string>> lines(1, {""});
+  bool quoted = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (quoted && c == '"' && i + 1 < text.size() && text[i + 1] == '"')
+      lines.back().back() += text[++i];
+    else if (c == '"')
+      quoted = !quoted;
+    else if (!quoted && c == ',')
+      lines.back().emplace_back();
+    else if (!quoted && c == '\n')
+      lines.push_back({""});
+    else
+      lines.back().back() += c;
+  }
+  lines.pop_back();
+  return lines;
+}
+
+bool has_gnuplot() {
+  return std::system("command -v gnuplot >/dev/null") == 0;
+}
+
+template <class Wanted>
+std::ptrdiff_t count(const std::vector<XmlElement>& elements, Wanted wanted) {
+  return std::count_if(elements.begin(), elements.end(), wanted);
+}
+std::ptrdiff_t n_texts(const std::vector<XmlElement>& elements, const std::string& text) {
+  return count(elements, [&](const XmlElement& e) { return e.text.find(text) != text.npos; });
+}
+
+Chart two_series() {
+  Chart chart{.title = wild, .x_label = "seconds <s>", .y_label = "L2 & Linf"};
+  chart.series.push_back({wild, {{0.1, 1.0 / 3}, {1e-300, 2}, {0.7, -1e17}}});
+  chart.series.push_back({"two", {{1, 2}, {2, 3}}, Style::dashes});
+  return chart;
+}
+
+}  // namespace
+
+TEST_CASE("the CSV of a chart has its data bit for bit", "[apps][plot]") {
+  const Scratch scratch;
+  const Chart chart = two_series();
+  write_svg(scratch.path("a.svg"), chart);
+  const auto lines = read_csv(slurp(scratch.path("a.csv")));
+  REQUIRE(lines.size() == 6);
+  CHECK(lines[0] == std::vector<std::string>{"series", "x", "y"});
+  std::size_t line = 1;
+  for (const Series& series : chart.series) {
+    for (const Point& p : series.points) {
+      REQUIRE(lines[line].size() == 3);
+      CHECK(lines[line][0] == series.name);
+      CHECK(std::strtod(lines[line][1].c_str(), nullptr) == p.x);
+      CHECK(std::strtod(lines[line][2].c_str(), nullptr) == p.y);
+      ++line;
+    }
+  }
+}
+
+TEST_CASE("the SVG of a chart has a curve per series, and every text unchanged",
+          "[apps][plot][.][gnuplot]") {
+  const Scratch scratch;
+  REQUIRE(write_svg(scratch.path("a.svg"), two_series()));
+  const auto elements = read_xml(slurp(scratch.path("a.svg")));
+  CHECK(count(elements, [](const XmlElement& e) {
+          return e.attributes.find("id=\"gnuplot_plot_") != std::string::npos;
+        }) == 2);
+  CHECK(n_texts(elements, wild) == 2);  // the title and the key
+  CHECK(n_texts(elements, "seconds <s>") == 1);
+  CHECK(n_texts(elements, "L2 & Linf") == 1);
+}
+
+TEST_CASE("points that do not fit on the axes are left out, and the others are drawn",
+          "[apps][plot]") {
+  const Scratch scratch;
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  Chart chart{.title = "logarithms", .x_log = true, .y_log = true};
+  chart.series.push_back({"none", {{0, 1}, {1, 0}, {nan, 1}}});
+  CHECK_FALSE(write_svg(scratch.path("a.svg"), chart));
+  CHECK(scratch.n_files() == 1);  // the data
+  CHECK(read_csv(slurp(scratch.path("a.csv"))).size() == 4);
+  chart.series.push_back({"one", {{0.25, 1e-9}, {1, -1}}});
+  chart.x_ticks = {0.25, 0.5};
+  CHECK(write_svg(scratch.path("a.svg"), chart) == has_gnuplot());
+  if (has_gnuplot()) CHECK(n_texts(read_xml(slurp(scratch.path("a.svg"))), "0.25") == 1);
+}
+
+TEST_CASE("a logarithmic axis is labelled at its ends, too", "[apps][plot][.][gnuplot]") {
+  const Scratch scratch;
+  // Edge lengths of two boxes: their logarithms are rounded towards each other.
+  Chart chart{.title = "ends", .x_log = true};
+  chart.x_ticks = {0.12500000000000006, 0.24999999999999997};
+  chart.series.push_back({"edges", {{chart.x_ticks[0], 7}, {chart.x_ticks[1], 8}}});
+  REQUIRE(write_svg(scratch.path("a.svg"), chart));
+  const auto elements = read_xml(slurp(scratch.path("a.svg")));
+  CHECK(n_texts(elements, "0.125") == 1);
+  CHECK(n_texts(elements, "0.25") == 1);
+}
+
+TEST_CASE("no two labels of an axis are equal, and whole numbers have all their digits",
+          "[apps][plot][.][gnuplot]") {
+  const Scratch scratch;
+  Chart chart{.title = "digits", .x_log = true};
+  chart.x_ticks = {1024, 2048};
+  chart.series.push_back({"flat", {{1024, 10.01}, {2048, 10.055}}});
+  REQUIRE(write_svg(scratch.path("a.svg"), chart));
+  std::vector<std::string> labels;
+  for (const XmlElement& e : read_xml(slurp(scratch.path("a.svg"))))
+    if (e.name == "text" && e.text.find_first_of("0123456789") != std::string::npos)
+      labels.push_back(e.text);
+  CHECK(std::count(labels.begin(), labels.end(), "1024") == 1);
+  CHECK(std::count(labels.begin(), labels.end(), "2048") == 1);
+  std::sort(labels.begin(), labels.end());
+  CHECK(std::adjacent_find(labels.begin(), labels.end()) == labels.end());
+}
+
+TEST_CASE("lines without marks differ where colours repeat", "[apps][plot][.][gnuplot]") {
+  const Scratch scratch;
+  Chart chart{.title = "strategies"};
+  const auto has_dashes = [&] {
+    REQUIRE(write_svg(scratch.path("a.svg"), chart));
+    return slurp(scratch.path("a.svg")).find("stroke-dasharray") != std::string::npos;
+  };
+  for (int i = 0; i < 8; ++i)
+    chart.series.push_back({std::to_string(i), {{0, 1.0 * i}, {1, 2.0 * i}}, Style::lines});
+  CHECK_FALSE(has_dashes());
+  chart.series.push_back({"8", {{0, 8}, {1, 16}}, Style::lines});
+  CHECK(has_dashes());
+}
+
+TEST_CASE("the error names a path that cannot be written", "[apps][plot]") {
+  const Scratch scratch;
+  const std::string path = scratch.path("absent") + "/a.svg";
+  CHECK_THAT(message_of([&] { write_svg(path, two_series()); }),
+             Catch::Contains("absent/a.csv: cannot be written (No such file or directory)"));
+  CHECK_THAT(message_of([&] { write_svg(path, Timeline{}); }), Catch::Contains("absent/a.csv"));
+  CHECK_THAT(message_of([&] { write_svg(scratch.path("a.png"), two_series()); }),
+             Catch::Contains("a.png: a picture's name must end in .svg"));
+  CHECK(scratch.n_files() == 0);
+}
+
+TEST_CASE("neither a picture nor its data may be another file of the run", "[apps][plot]") {
+  const Scratch scratch;
+  for (const char* file : {"a.svg", "a.csv"}) {
+    FileNames names;
+    names.writes("--json", scratch.path(file));
+    CHECK_THAT(message_of([&] { names.writes_picture("--plot", scratch.path("a.svg")); }),
+               Catch::Contains(std::string(file) + " would overwrite --json"));
+    names.writes_picture("--plot", scratch.path("b.svg"));
+    names.writes_picture("--plot", "");
+  }
+  std::filesystem::create_directory(scratch.path("c.csv"));
+  CHECK_THAT(message_of([&] { require_picture("--plot", scratch.path("c.svg")); }),
+             Catch::Contains("c.csv: cannot be written: is a directory"));
+  require_picture("--plot", scratch.path("d.svg"));
+}
+
+TEST_CASE("without gnuplot the data is written, but no picture", "[apps][plot]") {
+  const Scratch scratch;
+  const char* before = std::getenv("PATH");
+  const std::string kept = before != nullptr ? before : "";
+  ::setenv("PATH", scratch.path("").c_str(), 1);
+  const bool drawn = write_svg(scratch.path("a.svg"), two_series());
+  ::setenv("PATH", kept.c_str(), 1);
+  CHECK_FALSE(drawn);
+  CHECK(scratch.n_files() == 1);
+  CHECK(read_csv(slurp(scratch.path("a.csv"))).size() == 6);
+}
+
+TEST_CASE("a timeline draws each bar in its row, to scale", "[apps][plot]") {
+  const Scratch scratch;
+  Timeline timeline{.title = wild, .rows = {"PE 0", wild}};
+  timeline.bars = {{0, 1.000, 1.002, Activity::busy},
+                   {0, 1.002, 1.003, Activity::idle},
+                   {1, 1.000, 1.001, Activity::balancing},
+                   {1, 1.001, 1.004, Activity::busy}};
+  write_svg(scratch.path("t.svg"), timeline);
+  const auto elements = read_xml(slurp(scratch.path("t.svg")));
+  std::vector<double> widths, heights;
+  for (const XmlElement& e : elements) {
+    if (e.name != "rect" || e.attributes.find("fill=\"white\"") != std::string::npos) continue;
+    const auto number = [&](const char* name) {
+      return std::strtod(
+          e.attributes.c_str() + e.attributes.find(name) + std::string(name).size() + 2, nullptr);
+    };
+    widths.push_back(number(" width"));
+    heights.push_back(number(" y"));
+  }
+  REQUIRE(widths.size() == 4);
+  CHECK(widths[0] == Approx(2 * widths[1]).epsilon(1e-3));
+  CHECK(widths[3] == Approx(3 * widths[2]).epsilon(1e-3));
+  CHECK(heights[0] == heights[1]);
+  CHECK(heights[2] > heights[1]);
+  CHECK(count(elements, [](const XmlElement& e) {
+          return e.name == "rect" && e.attributes.find("fill=\"#0072b2\"") != std::string::npos;
+        }) == 2);
+  CHECK(n_texts(elements, wild) == 2);  // the title and a row
+  CHECK(n_texts(elements, "ms") == 1);
+  const auto lines = read_csv(slurp(scratch.path("t.csv")));
+  REQUIRE(lines.size() == 5);
+  CHECK(lines[4] == std::vector<std::string>{wild, "1.001", "1.004", "busy"});
+}
+
+TEST_CASE("the error names a bar that is not valid", "[apps][plot]") {
+  const Scratch scratch;
+  const auto message = [&](Bar bar) {
+    return message_of([&] {
+      write_svg(scratch.path("t.svg"), Timeline{.rows = {"PE 0"}, .bars = {{0, 0, 1}, bar}});
+    });
+  };
+  CHECK_THAT(message({1, 0, 1}), Catch::Contains("bar 1 of the timeline: row 1 of 1"));
+  CHECK_THAT(message({0, 2, 1}), Catch::Contains("from 2 to 1"));
+  CHECK_THAT(message({0, 0, std::numeric_limits<double>::infinity()}), Catch::Contains("inf"));
+  CHECK(scratch.n_files() == 0);
+}
+
+TEST_CASE("bytes that are not valid in XML are replaced", "[apps][plot]") {
+  const std::string bad = "\xef\xbf\xbd";
+  CHECK(printable("a\x01\nb\x7f") == "a  b ");
+  CHECK(printable("\xc3\xa9 \xe2\x86\x92 \xf0\x9f\x9a\x80") ==
+        "\xc3\xa9 \xe2\x86\x92 \xf0\x9f\x9a\x80");
+  CHECK(printable("\xc3") == bad);
+  CHECK(printable("\xc0\x80") == bad + bad);            // overlong
+  CHECK(printable("\xed\xa0\x80") == bad + bad + bad);  // a surrogate
+  CHECK(printable("\xef\xbf\xbf") == bad);              // U+FFFF
+  CHECK(printable("\xf4\x90\x80\x80") == bad + bad + bad + bad);
+  CHECK(xml_text("<a b=\"c\">&") == "&lt;a b=&quot;c&quot;&gt;&amp;");
+  CHECK(gnuplot_string("it's") == "'it''s'");
+  CHECK(csv_field("plain") == "plain");
+  CHECK(csv_field("a \"b\", c\n") == "\"a \"\"b\"\", c\n\"");
+}
