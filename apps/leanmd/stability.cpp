@@ -1,6 +1,6 @@
 #include "apps/leanmd/stability.hpp"
 
-#include <fmt/format.h>
+#include "apps/leanmd/simulation.hpp"
 
 namespace leanmd {
 namespace {
@@ -9,8 +9,8 @@ struct Case {
   std::string name;
   Options options;
   std::vector<Atom> atoms;
-  double most_drift = 0;
-  std::string expected{};
+  double most_drift = 0;   // per atom; of a case that runs
+  std::string expected{};  // part of the error; empty: it runs
 };
 
 Options base(double edge, std::array<std::int32_t, 3> cells, double dt = 0.002) {
@@ -109,34 +109,21 @@ std::vector<Case> cases() {
 
 }  // namespace
 
-tess::Task stability_report(std::vector<StabilityRow>& rows) {
+tess::Task run_stability(kit::Cases<>& report) {
   for (Case& one : cases()) {
-    StabilityRow row{.name = one.name, .expected = one.expected, .most_drift = one.most_drift};
-    row.n_atoms = static_cast<std::int64_t>(one.atoms.size());
+    kit::Case found{
+        .name = one.name, .parameter = "atoms", .value = static_cast<double>(one.atoms.size())};
     Outcome outcome;
     co_await simulate(one.options, std::move(one.atoms), outcome);
-    row.note = outcome.error;
-    row.drift = outcome.drift();
-    row.ok = one.expected.empty() ? row.note.empty() && row.drift <= row.most_drift
-                                  : row.note.find(one.expected) != std::string::npos;
-    rows.push_back(std::move(row));
+    found.note = outcome.error;
+    found.ok = one.expected.empty() ? outcome.error.empty() && outcome.drift() <= one.most_drift
+                                    : outcome.error.find(one.expected) != std::string::npos;
+    if (one.expected.empty()) {
+      found.met = outcome.drift();
+      found.tolerance = one.most_drift;
+    }
+    report.add(std::move(found));
   }
-}
-
-std::string stability_table(const std::vector<StabilityRow>& rows) {
-  std::string out = fmt::format("{:<44}{:>6}{:>11}{:>9}\n", "case", "atoms", "drift", "bound");
-  std::size_t n_failed = 0;
-  for (const StabilityRow& row : rows) {
-    n_failed += row.ok ? 0 : 1;
-    out += fmt::format("{:<44}{:>6}", row.name, row.n_atoms);
-    out += row.expected.empty() ? fmt::format("{:>11.2e}{:>9.0e}", row.drift, row.most_drift)
-                                : fmt::format("{:>20}", "refused");
-    out += (row.ok ? "" : "  FAILED") + (row.note.empty() ? "" : ": " + row.note) + '\n';
-  }
-  return out + fmt::format(
-                   "{} cases, {} failed; each that runs agrees with all pairs and returns "
-                   "to its start\n",
-                   rows.size(), n_failed);
 }
 
 }  // namespace leanmd

@@ -51,7 +51,7 @@ python3 -c '
 import json, sys
 study = json.load(open(sys.argv[1]))
 assert 1.9 < study["fitted_order"] < 2.1, study
-assert len(study["rows"]) == 5 and all(row["seconds"] > 0 for row in study["rows"]), study' "$scratch/study.json" && [[ -s $scratch/study.csv ]] &&
+assert len(study["results"]) == 5 and all(row["seconds"] > 0 for row in study["results"]), study' "$scratch/study.json" && [[ -s $scratch/study.csv ]] &&
   pass || fail "the study"
 
 # A study of which no row is stable has no picture, and says so.
@@ -84,13 +84,12 @@ fails 2 "half of the box" --cutoff 12
 fails 2 "--gradient: 2" --gradient 2
 fails 2 "gredy" --balance gredy
 fails 2 "missing" --json "$scratch/missing/x.json"
-fails 2 "is for --study" --plot "$scratch/x.svg"
+fails 2 "needs --study" --plot "$scratch/x.svg"
 fails 2 "--study" --study --dt 0.9
 fails 2 "would overwrite --json" --study --json "$scratch/x.csv" --plot "$scratch/x.svg"
 fails 2 "would overwrite --trace" --trace "$scratch/x.json" --json "$scratch/x.json"
-fails 2 "does not work with --stability" --stability --json "$scratch/x.json"
 fails 2 "does not work with --stability" --stability --explain
 fails 2 "does not work with --study" --study --explain
-timeout 60 "$leanmd" --stability --pes 1 >"$scratch/out" 2>&1 && grep -q " 0 failed" "$scratch/out" && pass || fail "--stability"
+timeout 60 "$leanmd" --stability --pes 1 --json "$scratch/cases.json" >"$scratch/out" 2>&1 && grep -q " 0 failed" "$scratch/out" && grep -q '"case": "a liquid"' "$scratch/cases.json" && pass || fail "--stability"
 
 finish

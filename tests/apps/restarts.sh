@@ -48,7 +48,7 @@ says " 33 steps: "
 exits 2 "--atoms: 700, but the checkpoint has 600: leave the option out" "$bin/leanmd" --atoms 700 --pes 2 --restart "$folder"
 exits 2 "--cells: 3,3,3, but the checkpoint has 3,2,3" "$bin/leanmd" --cells 3,3,3 --pes 2 --restart "$folder"
 exits 2 "--steps: 5, but the checkpoint has done" "$bin/leanmd" --steps 5 --pes 2 --restart "$folder"
-exits 2 "not for --study" "$bin/leanmd" --study --checkpoint "$scratch/none"
+exits 2 "does not work with --study" "$bin/leanmd" --study --checkpoint "$scratch/none"
 exits 2 "was written by a program\|of the class" "$bin/amr" --pes 2 --restart "$folder"
 # The rounds before the restart are in the result, too.
 grep -q '"max_over_average"' "$scratch/run.json" && pass || fail "no rounds of before the restart"
