@@ -1,6 +1,6 @@
 #include "apps/lb_lab/output/replay.hpp"
 
-#include "apps/kit/json.hpp"
+#include "apps/kit/rows.hpp"
 #include "runtime/balance/datafile/lb_datafile.hpp"
 #include "runtime/balance/fold.hpp"
 #include "runtime/balance/memory.hpp"
@@ -36,42 +36,55 @@ Snapshot prepared(const Settings& s, Snapshot snapshot) {
 }
 
 /// What a strategy makes of a phase.
-kit::Json row(std::uint64_t phase, const Snapshot& snapshot, const std::string& name,
-              std::uint64_t seed) {
+struct Replay {
+  std::uint64_t phase = 0;
+  std::size_t n_pes = 0, n_elements = 0;
+  std::string strategy{};
+  tess::balance::Metrics before{}, after{};
+  double seconds = 0;
+  std::uint64_t fullest_pe_bytes = 0;
+  std::size_t n_over_limit = 0;
+};
+
+using R = const Replay&;
+using kit::Json;
+
+constexpr kit::Column<Replay> columns[] = {
+    {"phase", "phase", "6", kit::of<&Replay::phase>},
+    {"pes", "PEs", "6", kit::of<&Replay::n_pes>},
+    {"elements", "elements", "9", kit::of<&Replay::n_elements>},
+    {"strategy", "strategy", "<14", kit::of<&Replay::strategy>},
+    {"imbalance_before", "before", "8.3f", [](R r) -> Json { return r.before.max_over_average; }},
+    {"imbalance_predicted", "predicted", "9.3f",
+     [](R r) -> Json { return r.after.max_over_average; }},
+    {"moves", "moves", "8", [](R r) -> Json { return r.after.n_moves; }},
+    {"bytes_moved", "bytes", "12", [](R r) -> Json { return r.after.moved_bytes; }},
+    {"external_bytes", "external bytes", "14", [](R r) -> Json { return r.after.external_bytes; }},
+    {"strategy_seconds", "", nullptr, kit::of<&Replay::seconds>},
+    {"", "strategy ms", "12.3f", [](R r) -> Json { return 1e3 * r.seconds; }},
+    {"fullest_pe_bytes", "fullest PE", "14", kit::of<&Replay::fullest_pe_bytes>},
+    {"pes_over_limit", "over limit", "10", kit::of<&Replay::n_over_limit>}};
+
+Replay row(std::uint64_t phase, const Snapshot& snapshot, const std::string& name,
+           std::uint64_t seed) {
   const tess::balance::Strategy strategy = tess::balance::make_strategy(name, seed);
   const auto began = std::chrono::steady_clock::now();
   const tess::balance::Assignment wanted = strategy(snapshot);
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - began;
-  const tess::balance::Metrics before = measure(snapshot, snapshot.elements.pe);
-  const tess::balance::Metrics after = measure(snapshot, wanted);
   const std::vector<std::uint64_t> memory = tess::balance::memory_of(snapshot, wanted);
-  std::size_t n_over = 0;
+  Replay out{.phase = phase,
+             .n_pes = snapshot.pes.size(),
+             .n_elements = snapshot.elements.size(),
+             .strategy = name,
+             .before = measure(snapshot, snapshot.elements.pe),
+             .after = measure(snapshot, wanted),
+             .seconds = took.count(),
+             .fullest_pe_bytes = std::ranges::max(memory)};
   for (std::size_t p = 0; p < memory.size(); ++p)
     if (const std::uint64_t limit = snapshot.pes.memory_limit_bytes[p];
         limit != 0 && memory[p] > limit)
-      ++n_over;
-  return {{"phase", phase},
-          {"pes", snapshot.pes.size()},
-          {"elements", snapshot.elements.size()},
-          {"strategy", name},
-          {"imbalance_before", before.max_over_average},
-          {"imbalance_predicted", after.max_over_average},
-          {"moves", after.n_moves},
-          {"bytes_moved", after.moved_bytes},
-          {"external_bytes", after.external_bytes},
-          {"strategy_seconds", took.count()},
-          {"fullest_pe_bytes", std::ranges::max(memory)},
-          {"pes_over_limit", n_over}};
-}
-
-std::string line_of(const kit::Json& row) {
-  const auto text = [&](const char* key) { return row.at(key).text(); };
-  const auto number = [&](const char* key) { return row.at(key).real(); };
-  return fmt::format(
-      "{:>6} {:>6} {:>9} {:<14} {:>8.3f} {:>9.3f} {:>8} {:>12} {:>14} {:>12.3f} {:>14} {:>10}\n",
-      text("phase"), text("pes"), text("elements"), text("strategy"), number("imbalance_before"),
-      number("imbalance_predicted"), text("moves"), text("bytes_moved"), text("external_bytes"),
-      1e3 * number("strategy_seconds"), text("fullest_pe_bytes"), text("pes_over_limit"));
+      ++out.n_over_limit;
+  return out;
 }
 
 }  // namespace
@@ -103,12 +116,7 @@ Replayed replay(const Settings& s) {
   require_strategies(s);
   const bool all = std::ranges::count(s.strategies, "all") > 0;
   const std::vector<std::string>& names = all ? tess::balance::strategy_names() : s.strategies;
-  Replayed out;
-  out.table =
-      fmt::format("{:>6} {:>6} {:>9} {:<14} {:>8} {:>9} {:>8} {:>12} {:>14} {:>12} {:>14} {:>10}\n",
-                  "phase", "PEs", "elements", "strategy", "before", "predicted", "moves", "bytes",
-                  "external bytes", "strategy ms", "fullest PE", "over limit");
-  kit::Json root = {{"rows", kit::Json::array()}, {"left_out", kit::Json::array()}};
+  std::vector<Replay> rows;
   std::vector<tess::balance::Phase> phases =
       tess::balance::read_lb_datafiles(replay_files(s.replay));
   std::map<std::pair<std::string, std::string>, std::size_t> left_out;  // phases per name, reason
@@ -119,9 +127,7 @@ Replayed replay(const Settings& s) {
     for (const std::string& name : names) {
       const std::string why = tess::balance::obstacle(name, snapshot);
       if (why.empty()) {
-        kit::Json one = row(phase.id, snapshot, name, s.seed);
-        out.table += line_of(one);
-        root["rows"].push_back(std::move(one));
+        rows.push_back(row(phase.id, snapshot, name, s.seed));
       } else if (all) {
         ++left_out[{name, why}];
       } else {
@@ -131,18 +137,19 @@ Replayed replay(const Settings& s) {
       }
     }
   }
+  const kit::Rows<Replay> report(columns);
+  Replayed out{report.table(rows), report.json(rows), {{"left_out", Json::array()}}};
   for (const auto& [what, n_phases] : left_out) {
     const auto& [name, why] = what;
     out.table +=
         fmt::format("left out in {} of {} phases: {}: {}\n", n_phases, phases.size(), name, why);
-    root["left_out"].push_back({{"strategy", name}, {"phases", n_phases}, {"reason", why}});
+    out.left_out["left_out"].push_back({{"strategy", name}, {"phases", n_phases}, {"reason", why}});
   }
-  root["communications_left_out"] = n_communications;
+  out.left_out["communications_left_out"] = n_communications;
   if (n_communications > 0)
     out.table += fmt::format(
         "left out: {} communications that are not from one task of the files to another\n",
         n_communications);
-  out.json = kit::json_text(root, 1);
   return out;
 }
 

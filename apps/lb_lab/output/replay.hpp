@@ -1,6 +1,7 @@
 // Strategies on snapshots from files: the moves of each, on any number of PEs, without a run.
 #pragma once
 
+#include "apps/kit/json.hpp"
 #include "apps/lb_lab/run/settings.hpp"
 
 #include <string>
@@ -8,9 +9,10 @@
 
 namespace lb_lab {
 
-/// The rows of a replay, and the strategies that were left out.
+/// The rows of a replay; `left_out` has the strategies and communications that it left out.
 struct Replayed {
-  std::string table, json;
+  std::string table;
+  kit::Json rows, left_out;
 };
 
 /// The files of --replay: as given, and of a folder all of its LBDatafiles, in the order of their

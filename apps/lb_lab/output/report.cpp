@@ -1,13 +1,10 @@
 #include "apps/lb_lab/output/report.hpp"
 
-#include "apps/kit/json.hpp"
 #include "apps/kit/write_file.hpp"
 #include "apps/lb_lab/run/kind.hpp"
 #include "runtime/balance/strategy.hpp"
-#include "runtime/run.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -16,83 +13,58 @@
 namespace lb_lab {
 namespace {
 
-constexpr const char* line =
-    "{:<20} {:>6} {:<14} {:>10} {:>10} {:>7} {:>7} {:>7} {:>8} {:>10} {:>10} {:>7}\n";
+using R = const Row&;
+using kit::Json;
 
-std::string hash_text(std::uint64_t answer) {
-  return fmt::format("{:016x}", answer);
+double ms_per_iteration(R row) {
+  return 1e3 * row.seconds_total / row.n_iterations;
+}
+std::string percent(double share) {
+  return fmt::format("{:.1f}%", 100 * share);
+}
+Json imbalance_over_iterations(R row) {
+  Json curve = Json::array();
+  for (const double value : row.imbalance_of_iteration) curve.push_back(kit::rounded(value));
+  return curve;
 }
 
-/// Six digits: more are noise.
-double rounded(double value) {
-  return std::stod(fmt::format("{:.6g}", value));
-}
-
-kit::Json json_of(const Row& row) {
-  return {{"workload", row.workload},
-          {"strategy", row.strategy},
-          {"per_pe", row.per_pe},
-          {"pes", row.n_pes},
-          {"iterations", row.n_iterations},
-          {"seconds_total", row.seconds_total},
-          {"seconds_per_iteration", row.seconds_total / row.n_iterations},
-          {"imbalance_before", row.imbalance_before},
-          {"imbalance_after", row.imbalance_after},
-          {"moves", row.n_moves},
-          {"bytes_moved", row.moved_bytes},
-          {"balance_seconds", row.balance_seconds},
-          {"gain", row.gain},
-          {"result_hash", hash_text(row.answer)}};
-}
+constexpr kit::Column<Row> columns[] = {
+    {"workload", "workload", "<20", kit::of<&Row::workload>},
+    {"per_pe", "per_pe", "6", kit::of<&Row::per_pe>},
+    {"strategy", "strategy", "<14", kit::of<&Row::strategy>},
+    {"pes", "", nullptr, kit::of<&Row::n_pes>},
+    {"iterations", "", nullptr, kit::of<&Row::n_iterations>},
+    {"seconds_total", "seconds", "10.4f", kit::of<&Row::seconds_total>},
+    {"seconds_per_iteration", "", nullptr,
+     [](R r) -> Json { return r.seconds_total / r.n_iterations; }},
+    {"", "ms/iter", "10.3f", [](R r) -> Json { return ms_per_iteration(r); }},
+    {"ideal_seconds", "", nullptr, kit::of<&Row::ideal_seconds>},
+    {"", "ideal", "7", [](R r) -> Json { return percent(r.ideal_seconds / r.seconds_total); }},
+    {"imbalance_before", "before", "7.3f", kit::of<&Row::imbalance_before>},
+    {"imbalance_after", "after", "7.3f", kit::of<&Row::imbalance_after>},
+    {"moves", "moves", "8", kit::of<&Row::n_moves>},
+    {"bytes_moved", "", nullptr, kit::of<&Row::moved_bytes>},
+    {"", "KiB", "10.0f", [](R r) -> Json { return static_cast<double>(r.moved_bytes) / 1024; }},
+    {"balance_seconds", "", nullptr, kit::of<&Row::balance_seconds>},
+    {"", "balance ms", "10.3f", [](R r) -> Json { return 1e3 * r.balance_seconds; }},
+    {"gain", "", nullptr, kit::of<&Row::gain>},
+    {"", "gain", "7", [](R r) -> Json { return percent(r.gain); }},
+    {"result_hash", "", nullptr, [](R r) -> Json { return kit::hex(r.answer); }},
+    {"imbalance_over_iterations", "", nullptr, imbalance_over_iterations}};
 
 }  // namespace
 
-void print_head() {
-  tess::print_text(fmt::format(fmt::runtime(line), "workload", "per_pe", "strategy", "seconds",
-                               "ms/iter", "ideal", "before", "after", "moves", "KiB", "balance ms",
-                               "gain"));
+const kit::Rows<Row>& report() {
+  static const kit::Rows<Row> rows(columns);
+  return rows;
 }
 
-void print_row(const Row& row) {
-  tess::print_text(fmt::format(
-      fmt::runtime(line), row.workload, row.per_pe, row.strategy,
-      fmt::format("{:.4f}", row.seconds_total),
-      fmt::format("{:.3f}", 1e3 * row.seconds_total / row.n_iterations),
-      fmt::format("{:.1f}%", 100 * row.ideal_seconds / row.seconds_total),
-      fmt::format("{:.3f}", row.imbalance_before), fmt::format("{:.3f}", row.imbalance_after),
-      row.n_moves, fmt::format("{:.0f}", static_cast<double>(row.moved_bytes) / 1024),
-      fmt::format("{:.3f}", 1e3 * row.balance_seconds), fmt::format("{:.1f}%", 100 * row.gain)));
-}
-
-void print_best(const Sweep& sweep) {
-  for (const std::string& workload : sweep.settings.workloads) {
-    const Row& row = best_of(sweep, workload);
-    tess::print_text(
-        fmt::format("best of {}: {} chares per PE under {}, {:.4f} s, gain {:.1f} % over none\n",
-                    workload, row.per_pe, row.strategy, row.seconds_total, 100 * row.gain));
-  }
-}
-
-void write_json(const std::string& path, const Sweep& sweep) {
-  const Settings& s = sweep.settings;
-  kit::Json root = {
-      {"machine", sweep.machine}, {"grain", s.grain},           {"period", s.period},
-      {"when", s.when},           {"prediction", s.prediction}, {"seed", s.seed},
-  };
-  root["rows"] = kit::Json::array();
-  root["ideal_seconds"] = kit::Json::array();
-  root["imbalance_over_iterations"] = kit::Json::array();
-  for (const Row& row : sweep.rows) {
-    root["rows"].push_back(json_of(row));
-    root["ideal_seconds"].push_back(row.ideal_seconds);
-    kit::Json curve = kit::Json::array();
-    for (const double value : row.imbalance_of_iteration) curve.push_back(rounded(value));
-    root["imbalance_over_iterations"].push_back(std::move(curve));
-  }
-  root["best"] = kit::Json::array();
-  for (const std::string& workload : s.workloads)
-    root["best"].push_back(json_of(best_of(sweep, workload)));
-  kit::write_file(path, kit::json_text(root, 1));
+std::string best_text(const std::vector<Row>& best) {
+  std::string out;
+  for (const Row& row : best)
+    out += fmt::format("best of {}: {} chares per PE under {}, {:.4f} s, gain {:.1f} % over none\n",
+                       row.workload, row.per_pe, row.strategy, row.seconds_total, 100 * row.gain);
+  return out;
 }
 
 std::string list_text() {

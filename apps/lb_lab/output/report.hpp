@@ -1,6 +1,7 @@
-// Reports of the laboratory: before the run an explanation, a table row per run, JSON at the end.
+// Reports of the laboratory: before the run an explanation, a row per run, the snapshots of a run.
 #pragma once
 
+#include "apps/kit/rows.hpp"
 #include "apps/lb_lab/run/experiment.hpp"
 #include "apps/lb_lab/run/sweep_rows.hpp"
 
@@ -8,14 +9,9 @@
 
 namespace lb_lab {
 
-void print_head();
-void print_row(const Row& row);
-/// The best cut and strategy of each workload.
-void print_best(const Sweep& sweep);
-
-/// Writes rows (the schema of the README), best, and imbalance over iterations. Throws tess::Error
-/// where the file cannot be written.
-void write_json(const std::string& path, const Sweep& sweep);
+[[nodiscard]] const kit::Rows<Row>& report();
+/// A line for the best cut and strategy of each workload.
+[[nodiscard]] std::string best_text(const std::vector<Row>& best);
 
 /// All workloads and strategies, a line each.
 [[nodiscard]] std::string list_text();

@@ -27,11 +27,10 @@ struct Settings {
   std::uint64_t cell_bytes = 1024;
   std::uint64_t message_bytes = 1024;
   std::int32_t repeat = 1;  ///< runs of each; the fastest counts
-  std::string json, plot, snapshots;
+  std::string plot, snapshots;
   std::string snapshot_format = "json.br";  ///< or json: not compressed
-  bool explain = false;
-  std::vector<std::string> replay;  ///< files; not empty: no run
-  std::int32_t replay_pes = 0;      ///< 0: as in the files
+  std::vector<std::string> replay;          ///< files; not empty: no run
+  std::int32_t replay_pes = 0;              ///< 0: as in the files
   std::string fold = "block";
 };
 

@@ -28,12 +28,11 @@ struct Row {
 struct Sweep {
   Settings settings;
   std::function<void(const Row&)> on_row;  ///< called with each row; may be empty
-  std::string machine;
   std::vector<Row> rows;
   std::string wrong;  ///< the first run with another answer than the serial one; empty: none
 };
 
-/// The fastest row of a workload.
-[[nodiscard]] const Row& best_of(const Sweep& sweep, const std::string& workload);
+/// The fastest row of each workload.
+[[nodiscard]] std::vector<Row> best_of(const Sweep& sweep);
 
 }  // namespace lb_lab

@@ -22,7 +22,6 @@ Sweep sweep_on(const std::string& options, Settings settings) {
   complete(settings, setup.machine->n_pes());
   Sweep sweep;
   sweep.settings = std::move(settings);
-  sweep.machine = setup.machine->describe();
   REQUIRE(tess::run(setup, [&sweep] { return fill(sweep); }) == 0);
   return sweep;
 }
