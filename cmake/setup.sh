@@ -5,7 +5,7 @@
 #     --dry-run: says what it would do, and does nothing
 #     --only: build (compiles the programs), meshes (generates meshes, plots), tests; all three without it
 #     --peers: also the libraries beside which benchmarks run
-#     --fuzz: also clang's libraries for tests/fuzz
+#     --fuzz: also clang's libraries for tests/fuzz/files
 #     --with-browser: also Chromium for the test of the page of --monitor, which is skipped otherwise; about 100 MB
 #
 # Exit code 2, and no package is changed, where apt would remove one, where it does not know one, or where it may not install.

@@ -71,10 +71,18 @@ template <class Real, std::size_t D>
   return out;
 }
 
+/// Extends a box so that it contains the point.
+inline void grow(Aabb& box, const Point& p) noexcept {
+  for (std::size_t k = 0; k < 3; ++k) {
+    box.lo[k] = p[k] < box.lo[k] ? p[k] : box.lo[k];
+    box.hi[k] = p[k] > box.hi[k] ? p[k] : box.hi[k];
+  }
+}
+
 /// The smallest box that contains all points; no_box() without points.
 [[nodiscard]] inline Aabb box_around(std::span<const Point> points) noexcept {
   Aabb out = no_box<double, 3>();
-  for (const Point& point : points) out = merged(out, box_of(point));
+  for (const Point& point : points) grow(out, point);
   return out;
 }
 

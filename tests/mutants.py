@@ -239,7 +239,7 @@ def first_failure(log):
     """The first case, seed or check that the test's log names."""
     rule = False
     for line in log.split("\n"):
-        if match := re.match(r"FAILED (protocol_fuzz.*)|protocol_fuzz: repeat with[^:]*: (.*)", line):
+        if match := re.match(r"FAILED (.*)|protocol_fuzz: repeat with[^:]*: (.*)", line):
             return match.group(1) or match.group(2)
         if rule:
             return line.strip()
@@ -254,7 +254,7 @@ def quick_programs():
 
 
 def quick_form(test, programs):
-    """The test as the quick tier runs it; None if it does not. Its test_protocols has the scenarios of protocol_fuzz."""
+    """The test as the quick tier runs it; None if it does not. Its test_protocols runs protocol_fuzz."""
     if test[0] == "protocol_fuzz":
         return tuple(re.sub(r"^(\d+):\d+$", lambda m: f"{m[1]}:{int(m[1]) + QUICK_SEEDS - 1}", word) for word in test)
     return test if test[0] in programs else None

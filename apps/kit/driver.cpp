@@ -11,6 +11,14 @@
 
 namespace kit {
 
+Json document(const std::string& program, const std::string& machine, const Json& options,
+              const Json& results, const Json& more) {
+  Json out{{"program", program}, {"version", version()}, {"commit", build_commit()},
+           {"machine", machine}, {"options", options},   {"results", results}};
+  out.update(more);
+  return out;
+}
+
 Driver::Driver(tess::Setup& setup, const std::string& description)
     : line_(description),
       machine_(setup.machine->describe()),

@@ -43,6 +43,10 @@ struct Mode {
   static constexpr Modes own(unsigned number) { return Modes{8} << number; }
 };
 
+/// The whole of a JSON file, for programs whose options the driver does not read.
+[[nodiscard]] Json document(const std::string& program, const std::string& machine,
+                            const Json& options, const Json& results, const Json& more = {});
+
 class Driver {
  public:
   Driver(tess::Setup& setup, const std::string& description);

@@ -2,17 +2,20 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace kit {
 
 class FileNames {
  public:
-  /// `what`: the option or argument that names an input, such as "SOURCE". An empty path is none;
-  /// it may be a path that is not there. Throws as writes() if a file that is written has it.
+  // Both throw tess::Error (bad_argument) that names both options and paths where a file would be
+  // written that is one of the others. An empty path is none.
+
+  /// `what`: the option or argument that names an input, such as "SOURCE". The path may be one that
+  /// is not there.
   void reads(std::string what, std::string path);
-  /// Throws tess::Error (bad_argument) that names both options and paths if the path is one of the
-  /// others. `what`: "--json", or "--out r.pvtu:" for a file that follows from it.
+  /// `what`: "--json", or "--out r.pvtu:" for a file that follows from it.
   void writes(std::string what, std::string path);
   /// The same for a picture and its data beside it.
   void writes_picture(const std::string& what, const std::string& svg);
@@ -24,6 +27,8 @@ class FileNames {
   [[nodiscard]] const std::vector<Taken>& taken() const { return taken_; }
 
  private:
+  void take(Taken file);
+
   std::vector<Taken> taken_;
 };
 

@@ -1,5 +1,6 @@
 #include "apps/kit/timeline.hpp"
 
+#include "apps/kit/canvas.hpp"
 #include "apps/kit/quoting.hpp"
 #include "apps/kit/ticks.hpp"
 #include "apps/kit/write_file.hpp"
@@ -72,47 +73,32 @@ std::string svg(const Timeline& timeline) {
   const double span = last > first ? last - first : 1;
   const auto x = [&](double time) { return left + (time - first) / span * (width - left - right); };
 
-  std::string out = fmt::format(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" "
-      "height=\"{1}\" font-family=\"sans-serif\" font-size=\"12\">\n<style>",
-      width, base + bottom);
-  Text to(out);
-  for (const Look& each : looks) fmt::format_to(to, ".{}{{fill:{}}}", each.name, each.colour);
-  fmt::format_to(to, "</style>\n<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n");
-  fmt::format_to(to, "<text x=\"{}\" y=\"20\" font-size=\"14\">{}</text>\n", left,
-                 xml_text(timeline.title));
+  Canvas canvas({.width = width, .height = base + bottom});
+  canvas.text({left, 20}, timeline.title, Anchor::start, 14);
   for (std::size_t i = 0; i < looks.size(); ++i) {
     const double at = left + 110.0 * static_cast<double>(i);
-    fmt::format_to(to, "<circle class=\"{}\" cx=\"{}\" cy=\"40\" r=\"5\"/>", looks[i].name, at + 5);
-    fmt::format_to(to, "<text x=\"{}\" y=\"44\">{}</text>\n", at + 16, looks[i].name);
+    canvas.circle({at + 5, 40}, 5, {.fill = looks[i].colour});
+    canvas.text({at + 16, 44}, looks[i].name);
   }
   // Rows too thin for a name each are named now and then.
   const auto every = static_cast<std::size_t>(std::ceil(14 / pitch));
   for (std::size_t row = 0; row < n_rows; row += every)
-    fmt::format_to(to, "<text x=\"{}\" y=\"{:.1f}\" text-anchor=\"end\">{}</text>\n", left - 6,
-                   top + pitch * (static_cast<double>(row) + 0.5) + 4,
-                   xml_text(timeline.rows[row]));
+    canvas.text({left - 6, top + pitch * (static_cast<double>(row) + 0.5) + 4}, timeline.rows[row],
+                Anchor::end);
   for (const Bar& bar : timeline.bars)
-    fmt::format_to(to,
-                   "<rect class=\"{}\" x=\"{:.2f}\" y=\"{:.1f}\" width=\"{:.2f}\" "
-                   "height=\"{:.1f}\"/>\n",
-                   look(bar.activity).name, x(bar.begin),
-                   top + pitch * static_cast<double>(bar.row), x(bar.end) - x(bar.begin),
-                   pitch * 0.85);
+    canvas.rect({x(bar.begin), top + pitch * static_cast<double>(bar.row)},
+                x(bar.end) - x(bar.begin), pitch * 0.85, {.fill = look(bar.activity).colour});
   if (last > first) {
     const Unit unit = unit_of(span);
     const double step = tick_step(span);
     for (double tick = 0; tick <= span * (1 + 1e-9); tick += step) {
-      fmt::format_to(to,
-                     "<path d=\"M{0:.2f} {1}v5\" stroke=\"black\"/><text x=\"{0:.2f}\" y=\"{2}\" "
-                     "text-anchor=\"middle\">{3:.6g}</text>\n",
-                     x(first + tick), base, base + 18, tick / unit.seconds);
+      const double at = x(first + tick);
+      canvas.path(Path().move({at, base}).line({at, base + 5}), {.stroke = "black"});
+      canvas.text({at, base + 18}, fmt::format("{:.6g}", tick / unit.seconds), Anchor::middle);
     }
-    fmt::format_to(to, "<text x=\"{}\" y=\"{}\" text-anchor=\"end\">{}</text>\n", width - right,
-                   base + 34, unit.name);
+    canvas.text({width - right, base + 34}, unit.name, Anchor::end);
   }
-  out += "</svg>\n";
-  return out;
+  return canvas.svg();
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 // and their cost. Runs workloads with a known answer under every given strategy and cut, or
 // strategies on saved snapshots.
 #include "apps/kit/driver.hpp"
+#include "apps/kit/write_file.hpp"
 #include "apps/kit/wrong_answer.hpp"
 #include "apps/lb_lab/output/replay.hpp"
 #include "apps/lb_lab/output/report.hpp"
@@ -9,37 +10,23 @@
 #include "apps/lb_lab/workload/kernel.hpp"
 #include "runtime/runtime.hpp"
 
-#include <algorithm>
-
 namespace lb_lab {
 namespace {
 
+constexpr kit::Modes replaying = kit::Mode::own(0);
+
 tess::Task measure(Settings settings, double steps_a_second, kit::Driver& driver) {
-  const auto print = [&driver](const std::string& text) {
-    driver.progress().clear();
-    tess::print_text(text);
-  };
   Sweep sweep;
   sweep.settings = std::move(settings);
-  const Settings& s = sweep.settings;
-  const std::size_t n_rows = s.workloads.size() * s.per_pe.size() * s.strategies.size();
-  sweep.on_row = [&](const Row& row) {
-    print(report().line(row));
-    driver.progress().part(std::min(sweep.rows.size() + 1, n_rows), n_rows);
-  };
-  for (const std::string& one : s.left_out) print("left out: " + one + '\n');
-  print(report().head());
-  driver.progress().phase("running");
-  driver.progress().part(1, n_rows);
+  sweep.on_row = [](const Row& row) { tess::print_text(report().line(row)); };
+  for (const std::string& one : sweep.settings.left_out)
+    tess::print_text("left out: " + one + '\n');
+  tess::print_text(report().head());
   co_await run_all(sweep, steps_a_second);
-  const std::vector<Row> best = best_of(sweep);
-  print(best_text(best));
-  driver.write(report().json(sweep.rows), {{"best", report().json(best)}});
+  tess::print_text(best_text(sweep));
+  driver.write(report().json(sweep.rows), {{"best", best_json(sweep)}});
   if (!sweep.wrong.empty()) kit::end_with("lb_lab: wrong answer: " + sweep.wrong);
 }
-
-/// A replay reads snapshots and runs nothing.
-constexpr kit::Modes replays = kit::Mode::own(0);
 
 void add_options(kit::Driver& driver, Settings& s) {
   driver
@@ -53,7 +40,7 @@ void add_options(kit::Driver& driver, Settings& s) {
       .separated_by(',');
   driver.option("--seed", s.seed, "of random workloads and strategies");
   driver.json();
-  driver.in(kit::Mode::run);
+  driver.in(kit::Mode::run);  // a replay reads snapshots and runs nothing
   driver.option("--workload NAMES", s.workloads, "names, or all (--list)").separated_by(',');
   driver.option("--per-pe", s.per_pe, "chares per PE: cuts of the same work").separated_by(',');
   driver.option("--period", s.period, "iterations between rounds");
@@ -69,21 +56,21 @@ void add_options(kit::Driver& driver, Settings& s) {
   driver.option("--message-bytes", s.message_bytes, "bytes to each neighbour per iteration")
       .between(0, 1 << 30);
   driver.repeat(s.repeat, "runs of each; the fastest counts");
-  driver.folder("--plot DIR", s.plot, "write SVG plots into a directory");
-  driver.folder("--save-snapshot DIR", s.snapshots,
+  driver.option("--plot DIR", s.plot, "write SVG plots into a directory");
+  driver.option("--save-snapshot DIR", s.snapshots,
                 "write the snapshots given to strategies into a directory");
   driver
       .option("--snapshot-format", s.snapshot_format,
               "json.br: compressed with brotli, as vt does by default; or json")
       .one_of({"json.br", "json"});
   driver.explain();
-  driver.in(replays);
+  driver.in(replaying);
   driver
       .option("--replay PATH", s.replay,
               "run the strategies on saved snapshots instead: vt's LBDatafile, .json or .json.br, "
               "its files or their folder")
       .takes(1, 1 << 20);
-  driver.enters("--replay", replays);
+  driver.enters("--replay", replaying);
   driver.option("--pes-of-replay", s.replay_pes, "PEs to replay on (default: those of the files)")
       .between(1, 1 << 20);
   driver.option("--fold NAME", s.fold,
@@ -101,20 +88,25 @@ int start(tess::Setup& setup, int argc, char** argv) {
     if (driver.speaks()) tess::print_text(list_text());
     return 0;
   }
-  if (settings.snapshots.empty())
-    driver.line().refuse_without("--save-snapshot", {"--snapshot-format"});
+  if (driver.is_given("--snapshot-format") && !driver.is_given("--save-snapshot"))
+    tess::fail(
+        tess::ErrorCode::bad_argument,
+        "--snapshot-format: is an option of --save-snapshot; give a folder, or leave it out");
   for (const std::string& file : replay_files(settings.replay))
     driver.files().reads("--replay", file);
-  if (driver.mode() == replays) {
+  if (driver.mode() == replaying) {
     const Replayed replayed = replay(settings);
-    driver.progress().clear();
     if (!driver.speaks()) return 0;
     tess::print_text(replayed.table);
-    driver.write(replayed.rows, replayed.left_out);
+    driver.write(replayed.rows, {{"left_out", replayed.left_out},
+                                 {"communications_left_out", replayed.n_communications}});
     return 0;
   }
   const std::int32_t n_pes = setup.machine->n_pes();
   complete(settings, n_pes);
+  // On all processes: all of them have to end where one cannot write.
+  kit::make_folder("--plot", settings.plot);
+  kit::make_folder("--save-snapshot", settings.snapshots);
   double steps_a_second = 0;
   if (driver.speaks()) {
     if (driver.explains()) tess::print_text(explain_text(settings, n_pes));

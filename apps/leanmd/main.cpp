@@ -1,11 +1,12 @@
 // leanmd: molecular dynamics on cells and pairs of cells, after the Charm++ miniapp of this name.
 #include "apps/kit/driver.hpp"
 #include "apps/kit/wrong_answer.hpp"
+#include "apps/leanmd/report.hpp"
 #include "apps/leanmd/stability.hpp"
 #include "apps/leanmd/study.hpp"
 
 #include <cmath>
-#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace leanmd {
 namespace {
@@ -23,39 +24,43 @@ tess::Task run_once(Settings s, kit::Driver& driver) {
   std::vector<Atom> atoms;
   if (!s.options.checkpoints.restarts())
     atoms = initial_atoms(s.state, Motion(s.options.problem.box.edge, s.options.problem.dt));
-  std::vector<Row> rows{{s.options, {}}};
-  Row& row = rows.front();
-  co_await simulate(row.options, std::move(atoms), row.outcome);
+  Outcome outcome;
+  co_await simulate(s.options, std::move(atoms), outcome);
   driver.progress().clear();
-  tess::print(summary(row));
-  if (row.outcome.error.empty())
-    driver.write(report().json(rows));
-  else
-    kit::end_with("leanmd: " + row.outcome.error);
+  tess::print(table(s.options, outcome));
+  if (outcome.error.empty()) {
+    kit::Json results = kit::Json::array();
+    results.push_back(json_of(s.options, outcome));
+    driver.write(results);
+  } else {
+    kit::end_with("leanmd: " + outcome.error);
+  }
 }
 
 tess::Task run_study(Settings s, kit::Driver& driver) {
-  std::vector<Row> rows;
+  std::vector<StudyRow> rows;
   co_await study(s.options, s.state, rows);
   driver.progress().clear();
   const std::optional<double> order = fitted_order(rows);
-  tess::print(report().table(rows) +
+  tess::print(study_rows().table(rows),
               fmt::format("fitted order {}; drift: greatest change of the total energy per atom\n",
                           order ? fmt::format("{:.2f}", *order) : "-"));
-  driver.write(report().json(rows), {{"fitted_order", order}});
-  driver.draw(chart_of(rows));
-  for (const Row& row : rows)
-    if (row.outcome.is_wrong) {
-      kit::end_with(fmt::format("leanmd: --dt {}: {}", row.options.problem.dt, row.outcome.error));
+  driver.write(study_rows().json(rows), {{"fitted_order", order}});
+  driver.draw(study_chart(rows));
+  for (const StudyRow& row : rows)
+    if (row.is_wrong) {
+      kit::end_with(fmt::format("leanmd: --dt {}: {}", row.dt, row.error));
       co_return;
     }
 }
 
-tess::Task check_stability(kit::Driver& driver) {
-  kit::Cases<> cases;
-  co_await run_stability(cases);
-  const int code =
-      cases.finish(driver, "Each that runs agrees with all pairs and returns to its start.\n");
+tess::Task run_stability(kit::Driver& driver) {
+  kit::Cases<> report;
+  co_await stability_report(report);
+  const int code = report.finish(
+      driver,
+      "met: energy drift per atom; each case that runs agrees with all pairs and returns "
+      "to its start\n");
   if (code != 0) tess::exit(code);
 }
 
@@ -90,7 +95,7 @@ void check_problem(Settings& s) {
            " is shorter than a quarter of --cutoff and --skin; give fewer cells");
 }
 
-int start(tess::Setup& setup, int argc, char** argv) {
+int run(tess::Setup& setup, int argc, char** argv) {
   Settings s;
   Problem& p = s.options.problem;
   using kit::Mode;
@@ -118,6 +123,7 @@ int start(tess::Setup& setup, int argc, char** argv) {
   driver.flag("--check", s.options.check, "compare the first and the last forces with all pairs");
   driver.flag("--reverse", s.options.reverse,
               "afterwards run back with reversed velocities: must return to the start");
+  driver.json();
   driver.in(Mode::run);
   driver.explain("print what this run does");
   s.options.checkpoints.add_options(driver);
@@ -125,7 +131,6 @@ int start(tess::Setup& setup, int argc, char** argv) {
   driver.study("energy drift against time step: five of them");
   driver.picture("draw the study");
   driver.stability("stiff and extreme cases");
-  driver.json();
   if (!driver.parse(argc, argv)) return 0;
   driver.refuse_both("--explain", "--restart");  // which takes the checkpoint's options
   s.options.checkpoints.check(driver.line(),
@@ -133,14 +138,14 @@ int start(tess::Setup& setup, int argc, char** argv) {
                                "--temperature", "--seed", "--exchange", "--skin", "--every"});
   if (driver.is_given("--balance")) s.options.balance = tess::parse_balance(s.balance);
   if (!s.options.checkpoints.restarts()) check_problem(s);  // otherwise it is in the checkpoint
-  const kit::Modes mode = driver.mode();
-  if (mode == Mode::study && !(p.dt >= 8 * least_dt && p.dt <= 0.5 && s.options.n_steps >= 1))
+  if (driver.mode() == Mode::study &&
+      !(p.dt >= 8 * least_dt && p.dt <= 0.5 && s.options.n_steps >= 1))
     refuse("--study: takes steps of an eighth to twice of --dt ", p.dt,
            ", from 1e-5 to 1, and at least one of --steps ", s.options.n_steps);
   s.options.progress = &driver.progress();
   return tess::run(setup, [&]() -> tess::Task {
-    if (mode == Mode::stability) return check_stability(driver);
-    return mode == Mode::study ? run_study(s, driver) : run_once(s, driver);
+    if (driver.mode() == Mode::stability) return run_stability(driver);
+    return driver.mode() == Mode::study ? run_study(s, driver) : run_once(s, driver);
   });
 }
 
@@ -149,5 +154,5 @@ int start(tess::Setup& setup, int argc, char** argv) {
 
 int main(int argc, char** argv) {
   return tess::guarded(argc, argv,
-                       [&](tess::Setup& setup) { return leanmd::start(setup, argc, argv); });
+                       [&](tess::Setup& setup) { return leanmd::run(setup, argc, argv); });
 }

@@ -8,7 +8,8 @@
 
 namespace leanmd {
 
-/// On PE 0. Takes about a second.
-tess::Task run_stability(kit::Cases<>& report);
+/// On PE 0. Takes about a second. `parameter` is the number of atoms, `met` the energy drift per
+/// atom of a case that runs.
+tess::Task stability_report(kit::Cases<>& report);
 
 }  // namespace leanmd

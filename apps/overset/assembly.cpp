@@ -3,7 +3,7 @@
 #include "apps/kit/worst.hpp"
 #include "apps/overset/body.hpp"
 #include "apps/overset/grid.hpp"
-#include "apps/surface_file/read_surface.hpp"
+#include "collide/read_surface.hpp"
 #include "m2m/read_mesh.hpp"
 #include "runtime/core/error.hpp"
 #include "runtime/core/hash.hpp"
@@ -18,7 +18,7 @@ using tess::m2m::TetMesh;
 using tess::m2m::Wall;
 
 Wall wall_from_file(const std::string& path, std::string& remarks) {
-  const tess::dn::Surface surface = apps::read_surface(path);
+  const tess::dn::Surface surface = tess::dn::read_surface(path);
   remarks = remarks_text(surface);
   std::vector<Point> points;
   for (const auto& v : surface.vertices) points.push_back({v.x, v.y, v.z});
@@ -99,7 +99,7 @@ Problem read_problem(const Request& request) {
   overset = names_body(request.overset) ? mesh_around(parse_body(request.overset))
                                         : tess::m2m::read_mesh(request.overset);
   overset.name = request.overset;
-  const bool is_file = apps::names_surface(request.wall);
+  const bool is_file = tess::dn::names_surface(request.wall);
   auto boundary = tess::m2m::overset_boundary(overset, is_file ? "" : request.wall);
   problem.on_outer = std::move(boundary.on_outer);
   if (!is_file && boundary.wall.empty())

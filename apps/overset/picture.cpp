@@ -1,8 +1,8 @@
 #include "apps/overset/picture.hpp"
 
+#include "apps/kit/canvas.hpp"
+
 #include <algorithm>
-#include <fmt/format.h>
-#include <iterator>
 
 namespace overset {
 namespace {
@@ -27,8 +27,8 @@ struct View {
   [[nodiscard]] double height() const { return (box.hi[1] - box.lo[1]) * scale(); }
 };
 
-/// Appends the polygon in which the plane meets a tetrahedron, as a path.
-void append_cut(std::string& path, const TetMesh& mesh, const Tet& tet, const View& view) {
+/// Appends the polygon in which the plane meets a tetrahedron.
+void append_cut(kit::Path& path, const TetMesh& mesh, const Tet& tet, const View& view) {
   const auto point = [&](VertexId v) { return mesh.points[static_cast<std::size_t>(v)]; };
   std::vector<VertexId> below, above;
   for (const VertexId v : tet) (point(v)[2] < view.at ? below : above).push_back(v);
@@ -40,11 +40,11 @@ void append_cut(std::string& path, const TetMesh& mesh, const Tet& tet, const Vi
   for (std::size_t i = 0; i < edges.size(); ++i) {
     const Point p = point(edges[i].first), q = point(edges[i].second);
     const double t = (view.at - p[2]) / (q[2] - p[2]);
-    fmt::format_to(std::back_inserter(path), "{}{:.1f} {:.1f}", i == 0 ? 'M' : 'L',
-                   (p[0] + t * (q[0] - p[0]) - view.box.lo[0]) * view.scale(),
-                   view.height() - (p[1] + t * (q[1] - p[1]) - view.box.lo[1]) * view.scale());
+    const kit::Point at{(p[0] + t * (q[0] - p[0]) - view.box.lo[0]) * view.scale(),
+                        view.height() - (p[1] + t * (q[1] - p[1]) - view.box.lo[1]) * view.scale()};
+    i == 0 ? path.move(at) : path.line(at);
   }
-  path += 'Z';
+  path.close();
 }
 
 /// How a tetrahedron is drawn, by the worst of its corners.
@@ -69,28 +69,24 @@ std::string picture(const Problem& problem, const Assembly& assembly, Moment mom
   view.box = tess::collide::merged(bounds(problem.meshes[0]), bounds(problem.meshes[1]));
   const Aabb wall = problem.wall.box();
   view.at = wall.lo[2] + 0.503 * (wall.hi[2] - wall.lo[2]);  // not through a layer of vertices
-  std::string out = fmt::format(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"-10 -10 {:.0f} {:.0f}\" "
-      "stroke-width=\"0.6\" stroke-linejoin=\"round\">\n"
-      "<rect x=\"-10\" y=\"-10\" width=\"100%\" height=\"100%\" fill=\"white\"/>\n",
-      width + 20, view.height() + 20);
+  kit::Canvas canvas({.width = width, .height = view.height(), .margin = 10});
   constexpr std::array<const char*, 2> strokes{"#2c4a6e", "#b3541e"};
   constexpr std::array<std::array<const char*, 3>, 2> fills{
       {{"none", "#b9d3ee", "#e00000"}, {"none", "#f6d5b8", "#e00000"}}};
   for (std::size_t number = 0; number < 2; ++number) {
     const TetMesh& mesh = problem.meshes[number];
-    std::array<std::string, 3> paths;
+    std::array<kit::Path, 3> paths;
     for (const Tet& tet : mesh.tets) {
       const Look look =
           moment == Moment::before ? Look::field : look_of(tet, assembly.meshes[number].iblank);
       if (look != Look::hole) append_cut(paths[static_cast<std::size_t>(look)], mesh, tet, view);
     }
     for (std::size_t look = 0; look < 3; ++look)
-      if (!paths[look].empty())
-        out += fmt::format("<path fill=\"{}\" fill-opacity=\"0.7\" stroke=\"{}\" d=\"{}\"/>\n",
-                           fills[number][look], strokes[number], paths[look]);
+      canvas.path(
+          paths[look],
+          {.fill = fills[number][look], .stroke = strokes[number], .width = 0.6, .opacity = 0.8});
   }
-  return out + "</svg>\n";
+  return canvas.svg();
 }
 
 }  // namespace overset

@@ -5,7 +5,7 @@
 #pragma once
 
 #include "collide/search/entry.hpp"
-#include "collide/search/grid.hpp"
+#include "collide/search/region_grid.hpp"
 
 #include <span>
 #include <vector>

@@ -1,5 +1,7 @@
 #include "collide/search/slim_capsule.hpp"
 
+#include "runtime/core/simd.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -16,7 +18,7 @@ struct Columns {
 
 /// Puts eight capsules into columns: a transposition in three rounds of shuffles.
 void gather(const SlimCapsule* capsules, const std::uint32_t* which, Columns& columns) noexcept {
-  using Eight [[gnu::vector_size(32)]] = float;
+  using Eight = simd::Vector<float, width>;
   static_assert(sizeof(SlimCapsule) == sizeof(Eight) && sizeof(Columns) == width * sizeof(Eight));
   Eight x[width], y[width];
   for (std::size_t l = 0; l < width; ++l) std::memcpy(&x[l], &capsules[which[l]], sizeof(Eight));

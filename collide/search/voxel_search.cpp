@@ -58,7 +58,7 @@ bool VoxelSearch<Real, D>::solve(const TheProblem& problem, const TheBox& region
   // The region of a cell is rounded: the grid may keep to it, but objects outside may touch in it.
   const TheBox of_a = depth == 0 ? region : bounds_of(problem.boxes_a, problem.a);
   const TheBox bounds = depth == 0 ? region : clipped(of_a, region);
-  const Grid<Real, D> grid(bounds, choice ? choice->n_cells : choose(problem, bounds, depth));
+  const RegionGrid<Real, D> grid(bounds, choice ? choice->n_cells : choose(problem, bounds, depth));
   if (grid.size() == 1) {
     compare(problem);
     return true;
@@ -121,14 +121,14 @@ CellAt<D> VoxelSearch<Real, D>::choose(const TheProblem& problem, const TheBox& 
 template <class Real, std::size_t D>
 template <bool is_b, bool again, class Take>
 bool VoxelSearch<Real, D>::spread(const TheProblem& problem, const TheBox& of_a,
-                                  const Grid<Real, D>& grid, Level& level, const Take& take) {
+                                  const RegionGrid<Real, D>& grid, Level& level, const Take& take) {
   constexpr std::size_t ahead = 24, most = 512;
   const TheBox* const boxes = is_b ? problem.boxes_b : problem.boxes_a;
   const std::span<const Entry> entries = is_b ? problem.b : problem.a;
   const Corners<D> corners(grid.strides());
   std::array<std::uint32_t, most + Corners<D>::room> cell_of, entry_of;
   std::uint32_t* const codes = level.codes.data() + (is_b ? problem.a.size() : 0);
-  constexpr std::uint32_t outside = Grid<Real, D>::large - 1;
+  constexpr std::uint32_t outside = RegionGrid<Real, D>::large - 1;
   std::size_t n = 0;
   for (std::size_t i = 0; i < entries.size(); ++i) {
     const Entry entry = entries[i];
@@ -140,12 +140,12 @@ bool VoxelSearch<Real, D>::spread(const TheProblem& problem, const TheBox& of_a,
     const std::uint32_t code = codes[i];
     if (is_b && code == outside) continue;
     if (n >= most && !take(cell_of.data(), entry_of.data(), std::exchange(n, 0))) return false;
-    if (code != Grid<Real, D>::large) [[likely]] {
+    if (code != RegionGrid<Real, D>::large) [[likely]] {
       n += corners.write(code >> D, static_cast<std::uint32_t>(entry), code & ((1U << D) - 1),
                          cell_of.data() + n, entry_of.data() + n);
       continue;
     }
-    const CellRange<D> cells = grid.cells(box);
+    const Box<std::int32_t, D> cells = grid.cells(box);
     for (CellAt<D> at = cells.lo;;) {
       std::uint32_t below = below_of(entry);
       for (std::size_t k = 0; k < D; ++k) below |= (at[k] != cells.lo[k] ? 1U : 0U) << k;
@@ -164,7 +164,7 @@ bool VoxelSearch<Real, D>::spread(const TheProblem& problem, const TheBox& of_a,
 /// A counting sort.
 template <class Real, std::size_t D>
 bool VoxelSearch<Real, D>::sort_into_voxels(const TheProblem& problem, const TheBox& of_a,
-                                            const Grid<Real, D>& grid, Level& level) {
+                                            const RegionGrid<Real, D>& grid, Level& level) {
   const std::size_t n_cells = grid.size();
   const std::size_t most = &level == &levels_.front() ? most_entries_ : ~std::size_t{0};
   level.cells.assign(n_cells, Cell{});

@@ -59,7 +59,7 @@ class VoxelSearch {
   struct Level {
     std::vector<Cell> cells;
     std::vector<std::uint64_t> models;  // per cell: 0, model + 1, or several
-    Scratch<std::uint32_t> codes;       // per object: Grid::code()
+    Scratch<std::uint32_t> codes;       // per object: RegionGrid::code()
     Scratch<Entry> sorted;              // by voxel
     std::vector<Voxel> voxels;
   };
@@ -68,10 +68,10 @@ class VoxelSearch {
              const std::optional<Choice<D>>& choice);
   [[nodiscard]] CellAt<D> choose(const TheProblem& problem, const TheBox& region,
                                  std::size_t depth);
-  bool sort_into_voxels(const TheProblem& problem, const TheBox& of_a, const Grid<Real, D>& grid,
-                        Level& level);
+  bool sort_into_voxels(const TheProblem& problem, const TheBox& of_a,
+                        const RegionGrid<Real, D>& grid, Level& level);
   template <bool is_b, bool again, class Take>
-  static bool spread(const TheProblem& problem, const TheBox& of_a, const Grid<Real, D>& grid,
+  static bool spread(const TheProblem& problem, const TheBox& of_a, const RegionGrid<Real, D>& grid,
                      Level& level, const Take& take);
   void note_models(Level& level, const std::uint32_t* cell_of, const std::uint32_t* entry_of,
                    std::size_t n);

@@ -1,7 +1,6 @@
 #include "m2m/conservative/overlap_rows.hpp"
 
 #include "m2m/interpolate/locate.hpp"
-#include "m2m/search/cells.hpp"
 #include "runtime/core/check.hpp"
 
 #include <algorithm>

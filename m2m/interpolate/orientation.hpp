@@ -2,6 +2,10 @@
 // exceeds an error bound; otherwise expansions do (Shewchuk 1997, "Adaptive precision
 // floating-point arithmetic and fast robust geometric predicates"). The sign is exact while no
 // intermediate result leaves the range of double, that is for edges from 1e-80 to 1e100.
+//
+// The value is a weight, so its last bits count, too. The exact numbers of collide/shapes have no
+// such range, but near a plane they take twice the time of expansions (0.66 instead of 0.35 µs),
+// and round the value differently in one of twenty cases.
 #pragma once
 
 #include "m2m/mesh.hpp"

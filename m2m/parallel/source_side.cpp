@@ -47,7 +47,7 @@ Donor in_tet(std::int32_t tet, const Weights& weights, Centring centring) {
 Aabb box_of_nearest(const MeshView& mesh) {
   Aabb box = collide::no_box<double, 3>();
   for (const std::int32_t v : points_of_nearest(mesh))
-    box = collide::merged(box, collide::box_of(mesh.points[static_cast<std::size_t>(v)]));
+    grow(box, mesh.points[static_cast<std::size_t>(v)]);
   return box;
 }
 

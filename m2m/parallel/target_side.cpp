@@ -97,7 +97,7 @@ void TargetSide::name_sources(const MeshView& mesh, std::span<const SourcePiece>
                                    [](const SourcePiece& s) { return s.has_points != 0; });
   Aabb around = collide::no_box<double, 3>();
   for (const NearestSoFar& point : nearest_)
-    around = merged(around, collide::box_of(mesh.points[static_cast<std::size_t>(point.row)]));
+    grow(around, mesh.points[static_cast<std::size_t>(point.row)]);
   nearest_parts_ = NearestParts(boxes, around);
 }
 

@@ -1,5 +1,7 @@
 #include "m2m/partition/curve_cut.hpp"
 
+#include "runtime/core/hilbert.hpp"
+
 #include <algorithm>
 
 namespace tess::m2m {
@@ -22,7 +24,7 @@ class Positions {
   [[nodiscard]] std::uint64_t of(std::uint64_t cell) {
     if (const std::uint64_t outer = cell >> shift_; outer != outer_) {
       outer_ = outer;
-      position_ = hilbert_position(cell, levels_);
+      position_ = hilbert_position(outer, levels_);
     }
     return position_;
   }

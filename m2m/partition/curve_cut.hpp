@@ -10,7 +10,7 @@
 #pragma once
 
 #include "m2m/partition/cell_counts.hpp"
-#include "m2m/partition/hilbert.hpp"
+#include "m2m/partition/hilbert_cube.hpp"
 
 #include <cstdint>
 #include <span>

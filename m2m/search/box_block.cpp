@@ -1,7 +1,6 @@
 #include "m2m/search/box_block.hpp"
 
 #include "m2m/interpolate/locate.hpp"
-#include "m2m/search/cells.hpp"
 
 #include <algorithm>
 #include <cmath>

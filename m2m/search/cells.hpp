@@ -11,14 +11,6 @@
 
 namespace tess::m2m {
 
-/// Extends a box so that it contains the point.
-inline void grow(Aabb& box, const Point& p) {
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    box.lo[axis] = p[axis] < box.lo[axis] ? p[axis] : box.lo[axis];
-    box.hi[axis] = p[axis] > box.hi[axis] ? p[axis] : box.hi[axis];
-  }
-}
-
 class Cells {
  public:
   /// A single cell.

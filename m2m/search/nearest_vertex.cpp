@@ -46,7 +46,7 @@ void NearestVertex::build(std::int32_t first, std::int32_t last) {
   const std::size_t self = nodes_.size();
   const auto begin = vertices_.begin() + first, end = vertices_.begin() + last;
   Aabb box = collide::box_of(points_[at(*begin)]);
-  for (auto v = begin; v != end; ++v) box = collide::merged(box, collide::box_of(points_[at(*v)]));
+  for (auto v = begin; v != end; ++v) grow(box, points_[at(*v)]);
   nodes_.push_back({box, first, last});
   if (last - first <= points_of_leaf) return;
   const std::size_t axis = longest_axis(box);

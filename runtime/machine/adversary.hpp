@@ -1,5 +1,6 @@
-// What disturbs the order of messages on a simulated machine, message by message. Without one, a
-// machine with a seed draws the disorder itself. The machine carries a message that is not delayed
+// What disturbs the order of messages on a simulated machine, message by message, and asks a PE in
+// the middle of its work to report its counters. Without one, a machine with a seed draws the
+// disorder itself. The machine carries a message that is not delayed
 // in a fixed time, and messages that arrive at the same time in the order of sending, so a run
 // whose adversary delays nothing is the plain run.
 #pragma once
@@ -31,6 +32,8 @@ class Adversary {
 
   /// How much later than due the message arrives; not negative.
   virtual Time delay(const Sending& sending) = 0;
+  /// True if the PE, which is about to take a step, is asked for its counters first.
+  virtual bool interrupts(PeId /*pe*/) { return false; }
 };
 
 }  // namespace tess::detail

@@ -305,7 +305,9 @@ void SimulatedMachine::run(Program& program) {
 
 void SimulatedMachine::run_step(Program& program, PeId pe) {
   Clock& clock = clocks_[static_cast<std::size_t>(pe.value)];
-  if (draws() && random_.chance(0.1)) program.idle(pe);
+  if (draws() ? random_.chance(0.1)
+              : options_.adversary != nullptr && options_.adversary->interrupts(pe))
+    program.idle(pe);
   const std::int64_t began = clock.now;
   begin_work(pe.value);
   const std::size_t ran = program.step(pe, clock.most);

@@ -82,6 +82,18 @@ Time Decisions::delay(const Sending& sending) {
   return late;
 }
 
+bool Decisions::interrupts(PeId pe) {
+  const std::uint64_t draw = next(mix(0x636f756eU + static_cast<std::uint64_t>(pe.value)));
+  if (!Random(draw).chance(0.2 * options_.reordering) || !take(draw)) return false;
+  if (options_.in_words)
+    events_.push_back({true,
+                       true,
+                       text(pe, " was asked for its counters in the middle of its work"),
+                       {},
+                       PeId{-1}});
+  return true;
+}
+
 PeId Decisions::move(const AfterMessage& after) {
   const std::uint64_t draw = next(after.key);
   Random random(draw);

@@ -1,5 +1,6 @@
-// The decisions of a test's adversary: whether a message is delayed, and how long; whether an
-// element is moved after a message, and where to. Each is drawn from the seed and from what it is
+// The decisions of a test's adversary: whether a message is delayed, and how long; whether a PE is
+// asked for its counters in the middle of its work; whether an element is moved after a message, and
+// where to. Each is drawn from the seed and from what it is
 // about, for example the third Cell::ghost from PE 1 to PE 3. So a decision does not change when
 // others are left out and the run takes another course, which lets a failure be shrunk.
 #pragma once
@@ -34,6 +35,7 @@ class Decisions final : public tess::detail::Adversary, public tess::detail::Ele
   Decisions(const DecisionOptions& options, DecisionIds& taken);
 
   Time delay(const Sending& sending) override;
+  bool interrupts(PeId pe) override;
   PeId move(const AfterMessage& after) override;
 
   /// The decisions taken so far, as sentences.

@@ -153,9 +153,8 @@ refuses "BACKGROUND kuhn:16 is no ladder" "${overset[@]}" kuhn:16 --study h
 refuses "BACKGROUND kuhn:16,8 is no ladder" "${overset[@]}" kuhn:16,8 ball --study h
 refuses "BACKGROUND kuhn:8,15 is no ladder" "${overset[@]}" kuhn:8,15 ball --study h
 refuses "BACKGROUND kuhn:8,16 does not work with --study wall" "$bin/overset" kuhn:8,16 ball --study wall
-refuses "--field does not work with --study wall" "$bin/overset" --field sin --study wall
-
-refuses "--json .* does not work with --study h" "${overset[@]}" --study h
+refuses "--field sin does not work with --study wall" "$bin/overset" --field sin --study wall
+refuses "--wall body does not work with --study h" "${overset[@]}" --study h --wall body
 refuses "--plot .* does not work with --study wall" "$bin/overset" --study wall --plot "$scratch"
 mkdir "$scratch/meshes" && "$bin/m2m_transfer" kuhn:2 kuhn:4 --out "$scratch/meshes/background.exo" >"$scratch/out"
 refuses "--plot .* would overwrite" "$bin/overset" "$scratch/meshes/background.exo" ball:2 --plot "$scratch/meshes"
@@ -203,7 +202,7 @@ refuses "--latency-ns: Value -1 not in range" "${crowd[@]}" --latency-ns=-1
 refuses "--out $scratch/missing/x.svg: cannot be written" "${crowd[@]}" --out "$scratch/missing/x"
 
 refuses "^collide_scene: error: --json: needs an INPUT" "$bin/collide_scene" --stability --json "$scratch/never.json"
-refuses "^particles: error: --steps: needs a SCENE" "$bin/particles" --stability --steps 5
+refuses "^particles: error: --steps 5 does not work with --stability" "$bin/particles" --stability --steps 5
 refuses "^collide_scene: error: voxel grid: coordinate" "$bin/collide_scene" boxes:100 --pes 2 --voxel-size 1e-30
 
 scaling=("$bin/m2m_scaling" --pes 1)
@@ -276,10 +275,10 @@ refuses --when "${lab[@]}" --when sometimes
 refuses moving_average "${lab[@]}" --prediction nonsense
 refuses --speed "${lab[@]}" --speed 1,1,0.5
 refuses --speed "${lab[@]}" --speed 1,1,0.5,0
-refuses "--plot .*--replay" "${replays[@]}" --replay "$scratch/empty.exo" --plot "$scratch"
+refuses "--plot: .*--replay" "${replays[@]}" --replay "$scratch/empty.exo" --plot "$scratch"
 refuses "--json /nowhere/x.json" "${replays[@]}" --replay "$scratch/empty.exo" --json /nowhere/x.json
-refuses "--workload .*--replay" "${replays[@]}" --replay "$scratch/empty.exo" --workload linear
-refuses "--fold: .*--replay" "${lab[@]}" --fold modulo
+refuses "--workload: .*--replay" "${replays[@]}" --replay "$scratch/empty.exo" --workload linear
+refuses "--fold: needs --replay" "${lab[@]}" --fold modulo
 refuses missing.json "${replays[@]}" --replay "$scratch/missing.json"
 refuses empty.exo "${replays[@]}" --replay "$scratch/empty.exo"
 refuses modulo "${replays[@]}" --replay "$scratch/empty.exo" --fold nonsense

@@ -90,6 +90,6 @@ fails 2 "would overwrite --json" --study --json "$scratch/x.csv" --plot "$scratc
 fails 2 "would overwrite --trace" --trace "$scratch/x.json" --json "$scratch/x.json"
 fails 2 "does not work with --stability" --stability --explain
 fails 2 "does not work with --study" --study --explain
-timeout 60 "$leanmd" --stability --pes 1 --json "$scratch/cases.json" >"$scratch/out" 2>&1 && grep -q " 0 failed" "$scratch/out" && grep -q '"case": "a liquid"' "$scratch/cases.json" && pass || fail "--stability"
+timeout 60 "$leanmd" --stability --pes 1 >"$scratch/out" 2>&1 && grep -q " 0 failed" "$scratch/out" && pass || fail "--stability"
 
 finish

@@ -48,7 +48,7 @@ says " 33 steps: "
 exits 2 "--atoms: 700, but the checkpoint has 600: leave the option out" "$bin/leanmd" --atoms 700 --pes 2 --restart "$folder"
 exits 2 "--cells: 3,3,3, but the checkpoint has 3,2,3" "$bin/leanmd" --cells 3,3,3 --pes 2 --restart "$folder"
 exits 2 "--steps: 5, but the checkpoint has done" "$bin/leanmd" --steps 5 --pes 2 --restart "$folder"
-exits 2 "does not work with --study" "$bin/leanmd" --study --checkpoint "$scratch/none"
+exits 2 "does not work with --st" "$bin/leanmd" --study --checkpoint "$scratch/none"
 exits 2 "was written by a program\|of the class" "$bin/amr" --pes 2 --restart "$folder"
 # The rounds before the restart are in the result, too.
 grep -q '"max_over_average"' "$scratch/run.json" && pass || fail "no rounds of before the restart"
@@ -66,7 +66,7 @@ runs "$bin/amr" --steps 32 --pes 1 --restart "$folder"
 grep -q '"moved": [1-9]' "$scratch/run.json" && pass || fail "no moves of before the restart"
 exits 2 "--order: 3, but the checkpoint has 2" "$bin/amr" --order 3 --pes 2 --restart "$folder"
 exits 2 "--uncorrected: yes, but the checkpoint has no" "$bin/amr" --uncorrected --pes 2 --restart "$folder"
-exits 2 "not for --study" "$bin/amr" --stability --checkpoint "$scratch/none"
+exits 2 "does not work with --st" "$bin/amr" --stability --checkpoint "$scratch/none"
 rm -rf "$folder"
 runs "$bin/amr" --least-level 1 --max-level 1 --width 0.06 --steps 9 --pes 2 --checkpoint "$folder" --checkpoint-every 4
 runs "$bin/amr" --max-level 1 --width 0.06 --pes 2 --restart "$folder"
@@ -113,7 +113,7 @@ runs "$bin/nqueens" --restart "$folder" --pes 1
 same "nqueens --first after a restart"
 exits 2 "--expect 5: --first does not count" "$bin/nqueens" --expect 5 --restart "$folder" --pes 1
 exits 2 "N: 9, but the checkpoint has 8" "$bin/nqueens" 9 --pes 2 --restart "$folder"
-exits 2 "not for --study" "$bin/nqueens" 9 --study --checkpoint "$scratch/none"
+exits 2 "does not work with --st" "$bin/nqueens" 9 --study --checkpoint "$scratch/none"
 
 # run_forever.sh starts a program that dies again, with all its options.
 cat >"$scratch/dies" <<END2

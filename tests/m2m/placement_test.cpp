@@ -11,10 +11,12 @@
 #include "m2m/read_mesh.hpp"
 #include "m2m/write_exodus.hpp"
 #include "m2m/write_vtu.hpp"
+#include "runtime/core/hilbert.hpp"
 #include "runtime/machine/simulated.hpp"
 #include "runtime/machine/threads.hpp"
 #include "tests/m2m/non_conforming.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/run.hpp"
 #include "tests/support/scratch.hpp"
 #include "tests/support/shared_data.hpp"
 
@@ -139,11 +141,9 @@ Task message_of_place(const TetMesh* mesh, PlaceOptions options, std::string* me
 }
 
 std::string refusal(const TetMesh& mesh, std::int32_t n_pes, const PlaceOptions& options = {4}) {
-  SimulatedOptions machine;
-  machine.n_pes = n_pes;
-  Setup setup{make_simulated_machine(machine), {}};
   std::string message;
-  REQUIRE(run(setup, [&]() -> Task { return message_of_place(&mesh, options, &message); }) == 0);
+  const auto main = [&] { return message_of_place(&mesh, options, &message); };
+  REQUIRE(tests::run(text("pes=", n_pes), main).exit_code == 0);
   return message;
 }
 
@@ -230,8 +230,9 @@ TEST_CASE("neighbours on the Hilbert curve share a face, and every cell is on it
   const HilbertCube cube({{0, 0, 0}, {8, 8, 8}});
   for (int i = 0; i < 512; ++i) {
     const std::array<int, 3> at{i % 8, i / 8 % 8, i / 64};
-    const std::uint64_t position =
-        hilbert_position(cube.cell({at[0] + 0.5, at[1] + 0.5, at[2] + 0.5}), levels);
+    const std::uint64_t position = hilbert_position(
+        cube.cell({at[0] + 0.5, at[1] + 0.5, at[2] + 0.5}) >> (3 * (hilbert_levels - levels)),
+        levels);
     REQUIRE_FALSE(seen.at(position));
     seen.at(position) = true;
     cells[position] = at;

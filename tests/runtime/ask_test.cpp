@@ -1,10 +1,9 @@
 // Awaited replies and what is waited for with them: late replies, mailboxes and futures that come
 // second, delayed sends, the report of a deadlock.
-#include "runtime/machine/simulated.hpp"
-#include "runtime/machine/threads.hpp"
 #include "runtime/runtime.hpp"
 #include "runtime/when.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/run.hpp"
 
 #include <string>
 
@@ -58,18 +57,10 @@ class Scribe : public tess::Chare<Scribe> {
 };
 
 int run_on(bool threads, std::function<tess::Task()> main, std::string* report = nullptr) {
-  tess::Setup setup;
-  if (threads) {
-    setup.machine = tess::make_threads_machine(2);
-  } else {
-    tess::SimulatedOptions options;
-    options.n_pes = 2;
-    options.cost = 100ns;
-    setup.machine = tess::make_simulated_machine(options);
-  }
-  if (report != nullptr)
-    setup.options.report = [report](const std::string& line) { *report += line + "\n"; };
-  return tess::run(setup, std::move(main));
+  const tests::Ending ending =
+      threads ? tests::run_threads(2, main) : tests::run("pes=2,cost=100ns", main);
+  if (report != nullptr) *report += ending.report;
+  return ending.exit_code;
 }
 
 }  // namespace

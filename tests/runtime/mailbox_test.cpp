@@ -4,6 +4,7 @@
 #include "runtime/runtime.hpp"
 #include "runtime/when.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/run.hpp"
 
 namespace {
 
@@ -45,13 +46,8 @@ TEST_CASE("messages of one key are taken in the order in which they were put",
           "[runtime][mailbox]") {
   for (const int pes_per_process : {1, 2}) {
     taken.clear();
-    tess::Setup setup;
-    tess::SimulatedOptions options;
-    options.n_pes = 2;
-    options.pes_per_process = pes_per_process;
-    options.cost = tess::Time(100);
-    setup.machine = tess::make_simulated_machine(options);
-    REQUIRE(tess::run(setup, []() -> tess::Task { return fill_and_read(); }) == 0);
+    const std::string keys = tess::text("pes=2,cost=100ns,per-process=", pes_per_process);
+    REQUIRE(tests::run(keys, [] { return fill_and_read(); }).exit_code == 0);
     CHECK(taken == std::vector<int>{0, 1, 2, 3, 100, 101, 102, 103});
   }
 }
@@ -109,13 +105,8 @@ template <auto F>
 void put_back() {
   taken.clear();
   Returner::first = -1;
-  tess::Setup setup;
-  tess::SimulatedOptions options;
-  options.n_pes = 2;
-  options.cost = tess::Time(100);
-  setup.machine = tess::make_simulated_machine(options);
-  REQUIRE(tess::run(setup,
-                    [] { tess::create<Returner>(tess::range(2))[{0}].template send<F>(); }) == 0);
+  const auto main = [] { tess::create<Returner>(tess::range(2))[{0}].template send<F>(); };
+  REQUIRE(tests::run("pes=2,cost=100ns", main).exit_code == 0);
 }
 
 enum class Side { left, right };

@@ -1,7 +1,7 @@
 // Scoped handles: what the end of their scope destroys, and what it leaves alone.
-#include "runtime/machine/simulated.hpp"
 #include "runtime/runtime.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/run.hpp"
 
 #include <type_traits>
 
@@ -43,18 +43,10 @@ class CogOwner : public tess::Chare<CogOwner> {
   Cogs parts_;
 };
 
-struct Ending {
-  int exit_code = 0;
-  std::string report;
-};
 template <class Main>
-Ending run(const std::string& machine, Main main) {
+tests::Ending run(const std::string& machine, Main main) {
   n_alive = 0;
-  tess::Setup setup;
-  setup.machine = tess::make_simulated_machine(tess::parse_simulated(machine));
-  Ending ending;
-  setup.options.report = [&ending](const std::string& line) { ending.report += line + "\n"; };
-  ending.exit_code = tess::run(setup, main);
+  const tests::Ending ending = tests::run(machine, main);
   CHECK(n_alive == 0);  // at the end of the run the rest is freed
   return ending;
 }
@@ -77,8 +69,8 @@ tess::Task end_of_scope() {
 
 TEST_CASE("the end of a scope destroys its array and its group on all PEs", "[runtime][destroy]") {
   for (int seed = 1; seed <= 20; ++seed) {
-    const Ending ending = run(tess::text("pes=3,per-process=1,seed=", seed),
-                              []() -> tess::Task { return end_of_scope(); });
+    const tests::Ending ending = run(tess::text("pes=3,per-process=1,seed=", seed),
+                                     []() -> tess::Task { return end_of_scope(); });
     INFO("seed " << seed);
     CHECK(ending.exit_code == 0);
     CHECK(ending.report == "");
@@ -116,7 +108,7 @@ tess::Task move_about() {
 }
 
 TEST_CASE("a scoped array is destroyed once, by its last owner", "[runtime][destroy]") {
-  const Ending ending = run("pes=2,cost=100ns", []() -> tess::Task { return move_about(); });
+  const tests::Ending ending = run("pes=2,cost=100ns", []() -> tess::Task { return move_about(); });
   CHECK(ending.exit_code == 0);
   CHECK(ending.report == "");
 }
@@ -133,7 +125,8 @@ tess::Task own_by_elements() {
 }
 
 TEST_CASE("an array that a chare owns is destroyed with the chare", "[runtime][destroy]") {
-  const Ending ending = run("pes=2,cost=100ns", []() -> tess::Task { return own_by_elements(); });
+  const tests::Ending ending =
+      run("pes=2,cost=100ns", []() -> tess::Task { return own_by_elements(); });
   CHECK(ending.exit_code == 0);
   CHECK(ending.report == "");
 }
@@ -148,7 +141,7 @@ tess::Task own_to_the_end(bool exits) {
 
 TEST_CASE("a scoped array at the end of the run is freed with the run", "[runtime][destroy]") {
   for (const bool exits : {true, false}) {
-    const Ending ending =
+    const tests::Ending ending =
         run("pes=2,cost=100ns", [exits]() -> tess::Task { return own_to_the_end(exits); });
     CHECK(ending.exit_code == (exits ? 3 : 1));  // 1: a coroutine waits
   }

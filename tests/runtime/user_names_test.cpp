@@ -1,9 +1,9 @@
 // A program may open namespace tess and still use the names of the runtime's internals.
 #include "runtime/balance.hpp"
-#include "runtime/machine/simulated.hpp"
 #include "runtime/runtime.hpp"
 #include "runtime/shared_array.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/run.hpp"
 
 #include <tuple>
 #include <type_traits>
@@ -96,15 +96,12 @@ TEST_CASE(
 }
 
 TEST_CASE("a program in namespace tess may use the names of internals", "[runtime]") {
-  Setup setup;
-  SimulatedOptions options = parse_simulated("pes=2,seed=1");
-  setup.machine = make_simulated_machine(options);
   int total = 0;
   const auto main = [&total]() -> Task {
     const auto stations = create<Station>(range(4));
     total = co_await stations.reduce<&Station::count>();
   };
-  CHECK(tess::run(setup, main) == 0);
+  CHECK(tests::run("pes=2,seed=1", main).exit_code == 0);
   CHECK(total == 6);
 }
 

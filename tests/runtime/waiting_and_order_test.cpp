@@ -1,8 +1,8 @@
 // Promises of order that a program can see: which coroutine a message goes to, and in which order a
 // reduction combines.
-#include "runtime/machine/simulated.hpp"
 #include "runtime/runtime.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/run.hpp"
 
 #include <numeric>
 #include <optional>
@@ -12,13 +12,8 @@ namespace {
 /// Without a seed messages keep their order.
 template <class Main>
 int simulate(std::int32_t n_pes, std::optional<std::uint64_t> seed, Main main) {
-  tess::SimulatedOptions options;
-  options.n_pes = n_pes;
-  options.cost = tess::Time(100);
-  options.seed = seed;
-  tess::Setup setup;
-  setup.machine = tess::make_simulated_machine(options);
-  return tess::run(setup, std::move(main));
+  const std::string by_seed = seed ? tess::text(",seed=", *seed) : "";
+  return tests::run(tess::text("pes=", n_pes, ",cost=100ns", by_seed), std::move(main)).exit_code;
 }
 
 struct Note {

@@ -1,9 +1,9 @@
 // The samples of runtime/ask.hpp and runtime/when.hpp, compiled and run. tests/samples/check.py
 // compares the text.
-#include "runtime/machine/simulated.hpp"
 #include "runtime/runtime.hpp"
 #include "runtime/when.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/run.hpp"
 
 #include <optional>
 #include <string>
@@ -57,12 +57,7 @@ tess::Task look(tess::ArrayProxy<Well> wells, Found& found) {
 }
 
 int simulate(std::function<tess::Task()> main) {
-  tess::SimulatedOptions options;
-  options.n_pes = 3;
-  options.cost = 100ns;
-  tess::Setup setup;
-  setup.machine = tess::make_simulated_machine(options);
-  return tess::run(setup, std::move(main));
+  return tests::run("pes=3,cost=100ns", std::move(main)).exit_code;
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 #include "apps/bench/collide/conversion.hpp"
 
-#include "collide/search/grid.hpp"
+#include "collide/search/region_grid.hpp"
 #include "collide/serial/conversion.hpp"
 #include "runtime/core/hash.hpp"
 
@@ -174,10 +174,10 @@ constexpr std::int32_t kHalf = 1 << 19;
 bool by_pairs(const VoxelAxis& axis, Boxes boxes, std::int32_t* index) {
   using namespace tess::collide;
   const double lo = axis.origin - kHalf * axis.size, hi = axis.origin + kHalf * axis.size;
-  const search::Grid<double, 3> grid({{lo, lo, lo}, {hi, hi, hi}},
-                                     {2 * kHalf, 2 * kHalf, 2 * kHalf});
+  const search::RegionGrid<double, 3> grid({{lo, lo, lo}, {hi, hi, hi}},
+                                           {2 * kHalf, 2 * kHalf, 2 * kHalf});
   for (const Aabb& box : boxes) {
-    const search::CellRange<3> cells = grid.cells(box);
+    const Box<std::int32_t, 3> cells = grid.cells(box);
     for (std::size_t k = 0; k < 3; ++k) {
       index[k] = cells.lo[k] - kHalf;
       index[k + 3] = cells.hi[k] - kHalf;

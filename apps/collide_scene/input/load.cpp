@@ -1,6 +1,6 @@
 #include "apps/collide_scene/input/load.hpp"
 
-#include "apps/surface_file/read_surface.hpp"
+#include "collide/read_surface.hpp"
 #include "runtime/core/error.hpp"
 
 #include <algorithm>
@@ -11,7 +11,7 @@ namespace collide_scene {
 namespace {
 
 Scene read_file(const std::string& path) {
-  const tess::dn::Surface surface = apps::read_surface(path);
+  const tess::dn::Surface surface = tess::dn::read_surface(path);
   Scene scene;
   scene.triangles.reserve(surface.triangles.size());
   const auto point = [](const tess::dn::Vec3& p) { return tess::collide::Point{p.x, p.y, p.z}; };
@@ -28,7 +28,7 @@ Scene read_file(const std::string& path) {
 
 Scene load_one(const std::string& input, std::uint64_t seed) {
   if (find_scene_kind(input) != nullptr) return make_scene(input, seed);
-  if (apps::names_surface(input)) return read_file(input);
+  if (tess::dn::names_surface(input)) return read_file(input);
   std::string names;
   for (const SceneKind& kind : scene_kinds()) names.append(" ").append(kind.name);
   tess::fail(tess::ErrorCode::bad_argument, input,

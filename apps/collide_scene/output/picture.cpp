@@ -1,18 +1,18 @@
 #include "apps/collide_scene/output/picture.hpp"
 
 #include "apps/collide_scene/output/view.hpp"
-#include "apps/kit/quoting.hpp"
+#include "apps/kit/canvas.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
-#include <iterator>
 #include <map>
+#include <utility>
 
 namespace collide_scene {
 namespace {
 
-using Rgb = std::array<double, 3>;
+using kit::Rgb;
 
 constexpr std::array<Rgb, 6> pale{{{176, 196, 222},
                                    {188, 211, 178},
@@ -20,25 +20,9 @@ constexpr std::array<Rgb, 6> pale{{{176, 196, 222},
                                    {222, 213, 187},
                                    {178, 214, 214},
                                    {205, 205, 210}}};
+/// From one hit to the most hits of an object.
 constexpr std::array<Rgb, 4> hot{{{255, 221, 85}, {253, 160, 50}, {227, 66, 40}, {128, 8, 40}}};
 constexpr int n_shades = 10;
-
-/// From 0, one hit, to 1, the most hits of an object.
-Rgb hot_at(double t) {
-  const double at = t * (hot.size() - 1);
-  const std::size_t first = std::min<std::size_t>(static_cast<std::size_t>(at), hot.size() - 2);
-  Rgb out{};
-  for (std::size_t k = 0; k < 3; ++k)
-    out[k] =
-        hot[first][k] + (at - static_cast<double>(first)) * (hot[first + 1][k] - hot[first][k]);
-  return out;
-}
-
-std::string hex(const Rgb& colour, double light) {
-  std::array<int, 3> rgb{};
-  for (std::size_t k = 0; k < 3; ++k) rgb[k] = static_cast<int>(std::lround(colour[k] * light));
-  return fmt::format("#{:02x}{:02x}{:02x}", rgb[0], rgb[1], rgb[2]);
-}
 
 class Colours {
  public:
@@ -52,11 +36,12 @@ class Colours {
     const std::uint32_t hits = n_hits_[triangle.object];
     const double shade = std::round(triangle.light * n_shades) / n_shades;
     if (hits == 0)
-      return hex(pale[scene_.models.empty() ? 0 : scene_.models[triangle.object] % pale.size()],
-                 0.62 + 0.38 * shade);
+      return kit::hex_colour(
+          pale[scene_.models.empty() ? 0 : scene_.models[triangle.object] % pale.size()],
+          0.62 + 0.38 * shade);
     // Few colours, so that neighbours share a path.
     const double t = most_ > 1 ? std::log(hits) / std::log(most_) : 1;
-    return hex(hot_at(std::round(t * 12) / 12), 0.72 + 0.28 * shade);
+    return kit::hex_colour(kit::colour_between(hot, std::round(t * 12) / 12), 0.72 + 0.28 * shade);
   }
 
  private:
@@ -67,13 +52,12 @@ class Colours {
 
 /// Triangles from the farthest to the nearest; neighbours in this order share a path if they share
 /// the colour.
-std::string triangles_svg(const View& view, const std::vector<std::uint32_t>& visible,
-                          const Colours& colours) {
-  std::string out = "<g stroke-width=\"0.3\" stroke-linejoin=\"round\">\n", colour, path;
+void draw_triangles(kit::Canvas& canvas, const View& view,
+                    const std::vector<std::uint32_t>& visible, const Colours& colours) {
+  std::string colour;
+  kit::Path path;
   const auto flush = [&] {
-    if (!path.empty())
-      out += fmt::format("<path fill=\"{0}\" stroke=\"{0}\" d=\"{1}\"/>\n", colour, path);
-    path.clear();
+    canvas.path(std::exchange(path, {}), {.fill = colour, .stroke = colour, .width = 0.3});
   };
   for (const std::uint32_t number : visible) {
     const Seen& t = view.triangles()[number];
@@ -81,16 +65,14 @@ std::string triangles_svg(const View& view, const std::vector<std::uint32_t>& vi
       flush();
       colour = std::move(now);
     }
-    fmt::format_to(std::back_inserter(path), "M{:.1f} {:.1f}L{:.1f} {:.1f}L{:.1f} {:.1f}Z", t.x[0],
-                   t.y[0], t.x[1], t.y[1], t.x[2], t.y[2]);
+    path.move({t.x[0], t.y[0]}).line({t.x[1], t.y[1]}).line({t.x[2], t.y[2]}).close();
   }
   flush();
-  return out + "</g>\n";
 }
 
 /// A path per colour, of rows of pixels.
-std::string pixels_svg(const View& view, const Colours& colours) {
-  std::map<std::string, std::string> paths;
+void draw_pixels(kit::Canvas& canvas, const View& view, const Colours& colours) {
+  std::map<std::string, kit::Path> paths;
   for (int y = 0; y < view.height(); ++y)
     for (int x = 0; x < view.width();) {
       const std::uint32_t number = view.at(x, y);
@@ -103,13 +85,11 @@ std::string pixels_svg(const View& view, const Colours& colours) {
       while (end < view.width() && view.at(end, y) != View::nothing &&
              colours.of(view.triangles()[view.at(end, y)]) == colour)
         ++end;
-      fmt::format_to(std::back_inserter(paths[colour]), "M{} {}h{}", x, y, end - x);
+      paths[colour].move({static_cast<double>(x), y + 0.5}).right(end - x);
       x = end;
     }
-  std::string out = "<g fill=\"none\" stroke-width=\"1.1\" transform=\"translate(0 0.5)\">\n";
   for (const auto& [colour, path] : paths)
-    out += fmt::format("<path stroke=\"{}\" d=\"{}\"/>\n", colour, path);
-  return out + "</g>\n";
+    canvas.path(path, {.fill = "none", .stroke = colour, .width = 1.1});
 }
 
 }  // namespace
@@ -120,31 +100,27 @@ std::string picture(const Scene& scene, std::span<const std::uint32_t> n_hits) {
   const View view(scene, n_pixels);
   const Colours colours(scene, n_hits);
   const int width = std::max(view.width(), 480), height = view.height() + legend;
-  std::string out = fmt::format(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" "
-      "font-family=\"sans-serif\" font-size=\"14\">\n<rect width=\"100%\" height=\"100%\" "
-      "fill=\"white\"/>\n<g transform=\"translate({2} 0)\">\n",
-      width, height, (width - view.width()) / 2);
+  kit::Canvas canvas(
+      {.width = static_cast<double>(width), .height = static_cast<double>(height), .font = 14});
+  canvas.begin({(width - view.width()) / 2.0, 0});
   const std::vector<std::uint32_t> visible = view.visible();
-  out += visible.size() <= most_triangles ? triangles_svg(view, visible, colours)
-                                          : pixels_svg(view, colours);
+  if (visible.size() <= most_triangles)
+    draw_triangles(canvas, view, visible, colours);
+  else
+    draw_pixels(canvas, view, colours);
+  canvas.end();
+  const double line = view.height() + 48;
   const auto n_hit = std::ranges::count_if(n_hits, [](std::uint32_t hits) { return hits > 0; });
-  out += fmt::format("</g>\n<text x=\"12\" y=\"{}\">{}</text>\n", view.height() + 24,
-                     kit::xml_text(scene.description));
-  out += fmt::format("<text x=\"12\" y=\"{}\">{} of {} objects collide</text>\n",
-                     view.height() + 48, n_hit, scene.n_objects());
+  canvas.text({12, line - 24}, scene.description);
+  canvas.text({12, line}, fmt::format("{} of {} objects collide", n_hit, scene.n_objects()));
   if (colours.most() > 0) {
-    constexpr int n_steps = 24, step = 6;
-    const int left = width - 210, line = view.height() + 48;
-    out += fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"end\">hits per object: 1</text>\n",
-                       left - 8, line);
-    for (int i = 0; i < n_steps; ++i)
-      out += fmt::format("<rect x=\"{}\" y=\"{}\" width=\"6.5\" height=\"12\" fill=\"{}\"/>\n",
-                         left + step * i, line - 11, hex(hot_at(i / (n_steps - 1.0)), 1));
-    out += fmt::format("<text x=\"{}\" y=\"{}\">{}</text>\n", left + step * n_steps + 8, line,
-                       colours.most());
+    constexpr double ramp = 144;
+    const double left = width - 210;
+    canvas.text({left - 8, line}, "hits per object: 1", kit::Anchor::end);
+    canvas.ramp({left, line - 11}, ramp, 12, 24, hot);
+    canvas.text({left + ramp + 8, line}, fmt::format("{}", colours.most()));
   }
-  return out + "</svg>\n";
+  return canvas.svg();
 }
 
 }  // namespace collide_scene

@@ -36,55 +36,55 @@ Snapshot prepared(const Settings& s, Snapshot snapshot) {
 }
 
 /// What a strategy makes of a phase.
-struct Replay {
+struct ReplayRow {
   std::uint64_t phase = 0;
   std::size_t n_pes = 0, n_elements = 0;
-  std::string strategy{};
-  tess::balance::Metrics before{}, after{};
-  double seconds = 0;
-  std::uint64_t fullest_pe_bytes = 0;
-  std::size_t n_over_limit = 0;
+  std::string strategy;
+  tess::balance::Metrics before, after;
+  double seconds = 0;  ///< of the strategy
+  std::uint64_t fullest = 0;
+  std::size_t n_over = 0;  ///< PEs over their memory limit
 };
 
-using R = const Replay&;
-using kit::Json;
-
-constexpr kit::Column<Replay> columns[] = {
-    {"phase", "phase", "6", kit::of<&Replay::phase>},
-    {"pes", "PEs", "6", kit::of<&Replay::n_pes>},
-    {"elements", "elements", "9", kit::of<&Replay::n_elements>},
-    {"strategy", "strategy", "<14", kit::of<&Replay::strategy>},
-    {"imbalance_before", "before", "8.3f", [](R r) -> Json { return r.before.max_over_average; }},
+constexpr kit::Column<ReplayRow> replay_columns[] = {
+    {"phase", "phase", "6", kit::of<&ReplayRow::phase>},
+    {"pes", "PEs", "6", kit::of<&ReplayRow::n_pes>},
+    {"elements", "elements", "9", kit::of<&ReplayRow::n_elements>},
+    {"strategy", "strategy", "<14", kit::of<&ReplayRow::strategy>},
+    {"imbalance_before", "before", "8.3f",
+     [](const ReplayRow& r) -> kit::Json { return r.before.max_over_average; }},
     {"imbalance_predicted", "predicted", "9.3f",
-     [](R r) -> Json { return r.after.max_over_average; }},
-    {"moves", "moves", "8", [](R r) -> Json { return r.after.n_moves; }},
-    {"bytes_moved", "bytes", "12", [](R r) -> Json { return r.after.moved_bytes; }},
-    {"external_bytes", "external bytes", "14", [](R r) -> Json { return r.after.external_bytes; }},
-    {"strategy_seconds", "", nullptr, kit::of<&Replay::seconds>},
-    {"", "strategy ms", "12.3f", [](R r) -> Json { return 1e3 * r.seconds; }},
-    {"fullest_pe_bytes", "fullest PE", "14", kit::of<&Replay::fullest_pe_bytes>},
-    {"pes_over_limit", "over limit", "10", kit::of<&Replay::n_over_limit>}};
+     [](const ReplayRow& r) -> kit::Json { return r.after.max_over_average; }},
+    {"moves", "moves", "8", [](const ReplayRow& r) -> kit::Json { return r.after.n_moves; }},
+    {"bytes_moved", "bytes", "12",
+     [](const ReplayRow& r) -> kit::Json { return r.after.moved_bytes; }},
+    {"external_bytes", "external bytes", "14",
+     [](const ReplayRow& r) -> kit::Json { return r.after.external_bytes; }},
+    {"strategy_seconds", "", nullptr, kit::of<&ReplayRow::seconds>},
+    {"", "strategy ms", "12.3f", [](const ReplayRow& r) -> kit::Json { return 1e3 * r.seconds; }},
+    {"fullest_pe_bytes", "fullest PE", "14", kit::of<&ReplayRow::fullest>},
+    {"pes_over_limit", "over limit", "10", kit::of<&ReplayRow::n_over>}};
 
-Replay row(std::uint64_t phase, const Snapshot& snapshot, const std::string& name,
-           std::uint64_t seed) {
+ReplayRow row_of(std::uint64_t phase, const Snapshot& snapshot, const std::string& name,
+                 std::uint64_t seed) {
   const tess::balance::Strategy strategy = tess::balance::make_strategy(name, seed);
   const auto began = std::chrono::steady_clock::now();
   const tess::balance::Assignment wanted = strategy(snapshot);
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - began;
+  ReplayRow row{.phase = phase,
+                .n_pes = snapshot.pes.size(),
+                .n_elements = snapshot.elements.size(),
+                .strategy = name,
+                .before = measure(snapshot, snapshot.elements.pe),
+                .after = measure(snapshot, wanted),
+                .seconds = took.count()};
   const std::vector<std::uint64_t> memory = tess::balance::memory_of(snapshot, wanted);
-  Replay out{.phase = phase,
-             .n_pes = snapshot.pes.size(),
-             .n_elements = snapshot.elements.size(),
-             .strategy = name,
-             .before = measure(snapshot, snapshot.elements.pe),
-             .after = measure(snapshot, wanted),
-             .seconds = took.count(),
-             .fullest_pe_bytes = std::ranges::max(memory)};
+  row.fullest = std::ranges::max(memory);
   for (std::size_t p = 0; p < memory.size(); ++p)
     if (const std::uint64_t limit = snapshot.pes.memory_limit_bytes[p];
         limit != 0 && memory[p] > limit)
-      ++out.n_over_limit;
-  return out;
+      ++row.n_over;
+  return row;
 }
 
 }  // namespace
@@ -116,18 +116,18 @@ Replayed replay(const Settings& s) {
   require_strategies(s);
   const bool all = std::ranges::count(s.strategies, "all") > 0;
   const std::vector<std::string>& names = all ? tess::balance::strategy_names() : s.strategies;
-  std::vector<Replay> rows;
+  Replayed out;
+  std::vector<ReplayRow> rows;
   std::vector<tess::balance::Phase> phases =
       tess::balance::read_lb_datafiles(replay_files(s.replay));
   std::map<std::pair<std::string, std::string>, std::size_t> left_out;  // phases per name, reason
-  std::size_t n_communications = 0;
   for (tess::balance::Phase& phase : phases) {
-    n_communications += phase.n_left_out;
+    out.n_communications += phase.n_left_out;
     const Snapshot snapshot = prepared(s, std::move(phase.snapshot));
     for (const std::string& name : names) {
       const std::string why = tess::balance::obstacle(name, snapshot);
       if (why.empty()) {
-        rows.push_back(row(phase.id, snapshot, name, s.seed));
+        rows.push_back(row_of(phase.id, snapshot, name, s.seed));
       } else if (all) {
         ++left_out[{name, why}];
       } else {
@@ -137,19 +137,20 @@ Replayed replay(const Settings& s) {
       }
     }
   }
-  const kit::Rows<Replay> report(columns);
-  Replayed out{report.table(rows), report.json(rows), {{"left_out", Json::array()}}};
+  const kit::Rows<ReplayRow> report(replay_columns);
+  out.table = report.table(rows);
+  out.rows = report.json(rows);
+  out.left_out = kit::Json::array();
   for (const auto& [what, n_phases] : left_out) {
     const auto& [name, why] = what;
     out.table +=
         fmt::format("left out in {} of {} phases: {}: {}\n", n_phases, phases.size(), name, why);
-    out.left_out["left_out"].push_back({{"strategy", name}, {"phases", n_phases}, {"reason", why}});
+    out.left_out.push_back({{"strategy", name}, {"phases", n_phases}, {"reason", why}});
   }
-  out.left_out["communications_left_out"] = n_communications;
-  if (n_communications > 0)
+  if (out.n_communications > 0)
     out.table += fmt::format(
         "left out: {} communications that are not from one task of the files to another\n",
-        n_communications);
+        out.n_communications);
   return out;
 }
 

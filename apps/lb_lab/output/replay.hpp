@@ -9,10 +9,11 @@
 
 namespace lb_lab {
 
-/// The rows of a replay; `left_out` has the strategies and communications that it left out.
+/// The rows of a replay and what was left out, as a table and for the JSON.
 struct Replayed {
   std::string table;
   kit::Json rows, left_out;
+  std::size_t n_communications = 0;  ///< left out, since they are not from a task to another
 };
 
 /// The files of --replay: as given, and of a folder all of its LBDatafiles, in the order of their

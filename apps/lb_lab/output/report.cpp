@@ -3,6 +3,7 @@
 #include "apps/kit/write_file.hpp"
 #include "apps/lb_lab/run/kind.hpp"
 #include "runtime/balance/strategy.hpp"
+#include "runtime/run.hpp"
 
 #include <algorithm>
 #include <filesystem>
@@ -16,18 +17,6 @@ namespace {
 using R = const Row&;
 using kit::Json;
 
-double ms_per_iteration(R row) {
-  return 1e3 * row.seconds_total / row.n_iterations;
-}
-std::string percent(double share) {
-  return fmt::format("{:.1f}%", 100 * share);
-}
-Json imbalance_over_iterations(R row) {
-  Json curve = Json::array();
-  for (const double value : row.imbalance_of_iteration) curve.push_back(kit::rounded(value));
-  return curve;
-}
-
 constexpr kit::Column<Row> columns[] = {
     {"workload", "workload", "<20", kit::of<&Row::workload>},
     {"per_pe", "per_pe", "6", kit::of<&Row::per_pe>},
@@ -37,9 +26,9 @@ constexpr kit::Column<Row> columns[] = {
     {"seconds_total", "seconds", "10.4f", kit::of<&Row::seconds_total>},
     {"seconds_per_iteration", "", nullptr,
      [](R r) -> Json { return r.seconds_total / r.n_iterations; }},
-    {"", "ms/iter", "10.3f", [](R r) -> Json { return ms_per_iteration(r); }},
+    {"", "ms/iter", "10.3f", [](R r) -> Json { return 1e3 * r.seconds_total / r.n_iterations; }},
     {"ideal_seconds", "", nullptr, kit::of<&Row::ideal_seconds>},
-    {"", "ideal", "7", [](R r) -> Json { return percent(r.ideal_seconds / r.seconds_total); }},
+    {"", "ideal %", "7.1f", [](R r) -> Json { return 100 * r.ideal_seconds / r.seconds_total; }},
     {"imbalance_before", "before", "7.3f", kit::of<&Row::imbalance_before>},
     {"imbalance_after", "after", "7.3f", kit::of<&Row::imbalance_after>},
     {"moves", "moves", "8", kit::of<&Row::n_moves>},
@@ -48,9 +37,13 @@ constexpr kit::Column<Row> columns[] = {
     {"balance_seconds", "", nullptr, kit::of<&Row::balance_seconds>},
     {"", "balance ms", "10.3f", [](R r) -> Json { return 1e3 * r.balance_seconds; }},
     {"gain", "", nullptr, kit::of<&Row::gain>},
-    {"", "gain", "7", [](R r) -> Json { return percent(r.gain); }},
+    {"", "gain %", "7.1f", [](R r) -> Json { return 100 * r.gain; }},
     {"result_hash", "", nullptr, [](R r) -> Json { return kit::hex(r.answer); }},
-    {"imbalance_over_iterations", "", nullptr, imbalance_over_iterations}};
+    {"imbalance_of_iteration", "", nullptr, [](R r) {
+       Json curve = Json::array();
+       for (const double value : r.imbalance_of_iteration) curve.push_back(kit::rounded(value));
+       return curve;
+     }}};
 
 }  // namespace
 
@@ -59,12 +52,21 @@ const kit::Rows<Row>& report() {
   return rows;
 }
 
-std::string best_text(const std::vector<Row>& best) {
+std::string best_text(const Sweep& sweep) {
   std::string out;
-  for (const Row& row : best)
+  for (const std::string& workload : sweep.settings.workloads) {
+    const Row& row = best_of(sweep, workload);
     out += fmt::format("best of {}: {} chares per PE under {}, {:.4f} s, gain {:.1f} % over none\n",
-                       row.workload, row.per_pe, row.strategy, row.seconds_total, 100 * row.gain);
+                       workload, row.per_pe, row.strategy, row.seconds_total, 100 * row.gain);
+  }
   return out;
+}
+
+Json best_json(const Sweep& sweep) {
+  std::vector<Row> best;
+  for (const std::string& workload : sweep.settings.workloads)
+    best.push_back(best_of(sweep, workload));
+  return report().json(best);
 }
 
 std::string list_text() {

@@ -1,4 +1,4 @@
-// Reports of the laboratory: before the run an explanation, a row per run, the snapshots of a run.
+// Reports of the laboratory: before the run an explanation, a row per run, the best at the end.
 #pragma once
 
 #include "apps/kit/rows.hpp"
@@ -10,8 +10,10 @@
 namespace lb_lab {
 
 [[nodiscard]] const kit::Rows<Row>& report();
-/// A line for the best cut and strategy of each workload.
-[[nodiscard]] std::string best_text(const std::vector<Row>& best);
+/// The best cut and strategy of each workload, a line each.
+[[nodiscard]] std::string best_text(const Sweep& sweep);
+/// The same as rows.
+[[nodiscard]] kit::Json best_json(const Sweep& sweep);
 
 /// All workloads and strategies, a line each.
 [[nodiscard]] std::string list_text();

@@ -2,14 +2,12 @@
 
 namespace lb_lab {
 
-std::vector<Row> best_of(const Sweep& sweep) {
-  std::vector<Row> best;
+const Row& best_of(const Sweep& sweep, const std::string& workload) {
+  const Row* best = nullptr;
   for (const Row& row : sweep.rows)
-    if (best.empty() || best.back().workload != row.workload)
-      best.push_back(row);
-    else if (row.seconds_total < best.back().seconds_total)
-      best.back() = row;
-  return best;
+    if (row.workload == workload && (best == nullptr || row.seconds_total < best->seconds_total))
+      best = &row;
+  return *best;
 }
 
 }  // namespace lb_lab

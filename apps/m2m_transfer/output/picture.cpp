@@ -1,12 +1,11 @@
 #include "apps/m2m_transfer/output/picture.hpp"
 
-#include "apps/kit/quoting.hpp"
+#include "apps/kit/canvas.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <fmt/format.h>
-#include <iterator>
 #include <limits>
 
 namespace m2m_transfer {
@@ -80,25 +79,14 @@ Polygon cut(const TetMesh& mesh, const Tet& tet, std::span<const double> values,
 }
 
 constexpr std::size_t n_colours = 64;
-
 /// From dark blue over green to yellow, perceptually uniform (five points of matplotlib's viridis).
-std::string colour(std::size_t level) {
-  constexpr std::array<std::array<double, 3>, 5> stops{
-      {{68, 1, 84}, {59, 82, 139}, {33, 145, 140}, {94, 201, 98}, {253, 231, 37}}};
-  const double at = 4.0 * static_cast<double>(level) / (n_colours - 1);
-  const std::size_t first = std::min<std::size_t>(static_cast<std::size_t>(at), 3);
-  std::array<int, 3> rgb{};
-  for (std::size_t c = 0; c < 3; ++c)
-    rgb[c] = static_cast<int>(
-        std::lround(stops[first][c] +
-                    (at - static_cast<double>(first)) * (stops[first + 1][c] - stops[first][c])));
-  return fmt::format("#{:02x}{:02x}{:02x}", rgb[0], rgb[1], rgb[2]);
-}
+constexpr std::array<kit::Rgb, 5> colours{
+    {{68, 1, 84}, {59, 82, 139}, {33, 145, 140}, {94, 201, 98}, {253, 231, 37}}};
 
 constexpr double panel = 480, margin = 30;
 
 /// Draws one panel of the picture, with the colour scale below it.
-void draw(std::string& out, const TetMesh& mesh, std::span<const double> values,
+void draw(kit::Canvas& canvas, const TetMesh& mesh, std::span<const double> values,
           const std::string& title, double left) {
   const Aabb box = bounds(mesh);
   const Plane plane = plane_through(box);
@@ -113,29 +101,28 @@ void draw(std::string& out, const TetMesh& mesh, std::span<const double> values,
     greatest = std::max(greatest, polygon.value());
     polygons.push_back(polygon);
   }
-  std::array<std::string, n_colours> paths;
+  std::array<kit::Path, n_colours> paths;
   for (const Polygon& polygon : polygons) {
     const double at = greatest > least ? (polygon.value() - least) / (greatest - least) : 0;
-    std::string& path = paths[static_cast<std::size_t>(at * (n_colours - 1) + 0.5)];
-    for (std::size_t i = 0; i < polygon.n; ++i)
-      fmt::format_to(std::back_inserter(path), "{}{:.1f} {:.1f}", i == 0 ? 'M' : 'L',
-                     left + (polygon.corners[i].x - box.lo[plane.right]) * scale,
-                     margin + panel - (polygon.corners[i].y - box.lo[plane.up]) * scale);
-    path += 'Z';
+    kit::Path& path = paths[static_cast<std::size_t>(at * (n_colours - 1) + 0.5)];
+    for (std::size_t i = 0; i < polygon.n; ++i) {
+      const kit::Point corner{left + (polygon.corners[i].x - box.lo[plane.right]) * scale,
+                              margin + panel - (polygon.corners[i].y - box.lo[plane.up]) * scale};
+      i == 0 ? path.move(corner) : path.line(corner);
+    }
+    path.close();
   }
   for (std::size_t level = 0; level < n_colours; ++level) {
-    if (!paths[level].empty())
-      out += fmt::format("<path fill=\"{0}\" stroke=\"{0}\" d=\"{1}\"/>\n", colour(level),
-                         paths[level]);
-    out += fmt::format("<rect x=\"{:.1f}\" y=\"{}\" width=\"{:.1f}\" height=\"10\" fill=\"{}\"/>\n",
-                       left + panel * static_cast<double>(level) / n_colours, margin + panel + 10,
-                       panel / n_colours + 0.5, colour(level));
+    const double at = static_cast<double>(level) / (n_colours - 1);
+    const std::string colour = kit::hex_colour(kit::colour_between(colours, at));
+    canvas.path(paths[level], {.fill = colour, .stroke = colour, .width = 0.5});
   }
-  out += fmt::format("<text x=\"{}\" y=\"{}\">{}, {} = {:.4g}</text>\n", left, margin - 10,
-                     kit::xml_text(title), "xyz"[plane.across], plane.at);
-  out += fmt::format("<text x=\"{}\" y=\"{}\">{:.4g}</text>\n", left, margin + panel + 36, least);
-  out += fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"end\">{:.4g}</text>\n", left + panel,
-                     margin + panel + 36, greatest);
+  canvas.ramp({left, margin + panel + 10}, panel, 10, n_colours, colours);
+  canvas.text({left, margin - 10},
+              fmt::format("{}, {} = {:.4g}", title, "xyz"[plane.across], plane.at));
+  canvas.text({left, margin + panel + 36}, fmt::format("{:.4g}", least));
+  canvas.text({left + panel, margin + panel + 36}, fmt::format("{:.4g}", greatest),
+              kit::Anchor::end);
 }
 
 }  // namespace
@@ -149,16 +136,11 @@ std::string picture(const Problem& problem) {
   std::vector<double> error(field.values.size());
   for (std::size_t v = 0; v < error.size(); ++v)
     error[v] = std::abs(field.values[v] - truth.values[v]);
-  std::string out = fmt::format(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {} {}\" font-family=\"sans-serif\" "
-      "font-size=\"14\" stroke-width=\"0.5\">\n<rect width=\"100%\" height=\"100%\" "
-      "fill=\"white\"/>\n",
-      2 * panel + 3 * margin, panel + 2 * margin + 20);
-  out += "<g stroke-linejoin=\"round\">\n";
-  draw(out, *target.mesh, field.values, field.name, margin);
-  draw(out, *target.mesh, error, "|error| of " + field.name, 2 * margin + panel);
-  out += "</g>\n</svg>\n";
-  return out;
+  kit::Canvas canvas(
+      {.width = 2 * panel + 3 * margin, .height = panel + 2 * margin + 20, .font = 14});
+  draw(canvas, *target.mesh, field.values, field.name, margin);
+  draw(canvas, *target.mesh, error, "|error| of " + field.name, 2 * margin + panel);
+  return canvas.svg();
 }
 
 }  // namespace m2m_transfer

@@ -1,5 +1,6 @@
 #include "apps/particles/output/picture.hpp"
 
+#include "apps/kit/canvas.hpp"
 #include "apps/kit/contour.hpp"
 #include "apps/kit/ticks.hpp"
 #include "collide/dn_field/compressed.hpp"
@@ -34,29 +35,28 @@ class Frame2D {
     const double x = (seen(p).x - low_.x) * scale_, y = (seen(p).y - low_.y) * scale_;
     return x >= 0 && x <= frame_width && y >= 0 && y <= height_;
   }
-  /// The command of a path: M moves there, L draws a line.
-  [[nodiscard]] std::string to(char command, Point p) const {
-    return fmt::format("{}{:.1f} {:.1f}", command, left + (p.x - low_.x) * scale_,
-                       top + height_ - (p.y - low_.y) * scale_);
+  /// Where a point of the plane is drawn.
+  [[nodiscard]] Point at(Point p) const {
+    return {left + (p.x - low_.x) * scale_, top + height_ - (p.y - low_.y) * scale_};
   }
-  /// Closed lines, cut where the frame ends.
-  [[nodiscard]] std::string closed(const std::vector<std::vector<Point>>& lines,
-                                   const char* look) const {
-    std::string path;
+  /// The name of the region inside of the frame.
+  [[nodiscard]] std::string clip() const { return fmt::format("c{}", axis_); }
+  /// Draws closed lines, cut where the frame ends.
+  void draw_closed(kit::Canvas& canvas, const std::vector<std::vector<Point>>& lines,
+                   kit::Look look) const {
+    kit::Path path;
     for (const std::vector<Point>& line : lines) {
-      for (std::size_t i = 0; i < line.size(); ++i) path += to(i == 0 ? 'M' : 'L', line[i]);
-      path += "Z";
+      for (std::size_t i = 0; i < line.size(); ++i)
+        i == 0 ? path.move(at(line[i])) : path.line(at(line[i]));
+      path.close();
     }
-    return path.empty()
-               ? ""
-               : fmt::format("<path clip-path=\"url(#c{})\" {} d=\"{}\"/>\n", axis_, look, path);
+    look.clip = clip();
+    canvas.path(path, look);
   }
-  /// The border, ticks with numbers, and the names of the axes.
-  [[nodiscard]] std::string axes() const {
-    std::string out = fmt::format(
-        "<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{:.1f}\" "
-        "fill=\"none\" stroke=\"#000\"/>\n",
-        left, top, frame_width, height_);
+  /// Draws the border, ticks with numbers, and the names of the axes.
+  void draw_axes(kit::Canvas& canvas) const {
+    using kit::Anchor;
+    canvas.rect({left, top}, frame_width, height_, {.fill = "none", .stroke = "black"});
     const double step = kit::tick_step(std::max(frame_width, height_) / scale_);
     const double base = top + height_;
     // Far from the origin labels differ in their last digits only; long ones are set smaller.
@@ -65,36 +65,33 @@ class Frame2D {
     const int digits =
         std::clamp(2 + static_cast<int>(std::ceil(std::log10(farthest / step))), 6, 17);
     const double font_size = std::min(12.0, 96.0 / (digits + 2));
-    const auto each_tick = [step](double from, double length, const auto& draw) {
+    const auto each_tick = [&](double from, double length, const auto& draw) {
       constexpr int most_ticks = 20;
       const double first = std::ceil(from / step);
       for (int i = 0; i < most_ticks && (first + i) * step <= from + length; ++i)
-        draw((first + i) * step);
+        draw((first + i) * step, fmt::format("{:.{}g}", (first + i) * step, digits));
     };
-    each_tick(low_.x, frame_width / scale_, [&](double at) {
-      out += fmt::format(
-          "<path d=\"M{0:.1f} {1:.1f}v5\" stroke=\"#000\"/><text x=\"{0:.1f}\" "
-          "y=\"{2:.1f}\" font-size=\"{5:.3g}\" text-anchor=\"middle\">{3:.{4}g}</text>\n",
-          left + (at - low_.x) * scale_, base, base + 18, at, digits, font_size);
+    each_tick(low_.x, frame_width / scale_, [&](double tick, const std::string& number) {
+      const double x = left + (tick - low_.x) * scale_;
+      canvas.path(kit::Path().move({x, base}).line({x, base + 5}), {.stroke = "black"});
+      canvas.text({x, base + 18}, number, Anchor::middle, font_size);
     });
-    each_tick(low_.y, height_ / scale_, [&](double at) {
-      const double y = base - (at - low_.y) * scale_;
-      out += fmt::format(
-          "<path d=\"M{0} {1:.1f}h-5\" stroke=\"#000\"/><text x=\"{2}\" "
-          "y=\"{3:.1f}\" font-size=\"{6:.3g}\" text-anchor=\"end\">{4:.{5}g}</text>\n",
-          left, y, left - 8, y + 4, at, digits, font_size);
+    each_tick(low_.y, height_ / scale_, [&](double tick, const std::string& number) {
+      const double y = base - (tick - low_.y) * scale_;
+      canvas.path(kit::Path().move({left, y}).line({left - 5, y}), {.stroke = "black"});
+      canvas.text({left - 8, y + 4}, number, Anchor::end, font_size);
     });
-    out += fmt::format("<text x=\"{}\" y=\"{:.1f}\" text-anchor=\"middle\">{}</text>\n",
-                       left + frame_width / 2, base + 36, "xyz"[right_]);
-    out += fmt::format("<text x=\"14\" y=\"{:.1f}\">{}</text>\n", top + height_ / 2, "xyz"[up_]);
-    return out;
+    canvas.text({left + frame_width / 2, base + 36}, {&"xyz"[right_], 1}, Anchor::middle);
+    canvas.text({14, top + height_ / 2}, {&"xyz"[up_], 1});
   }
-  /// The frame with what is drawn in it, `x` pixels to the right.
-  [[nodiscard]] std::string placed(double x, const std::string& drawn) const {
-    return fmt::format(
-        "<g transform=\"translate({:.0f},0)\">\n<clipPath id=\"c{}\"><rect x=\"{}\" "
-        "y=\"{}\" width=\"{}\" height=\"{:.1f}\"/></clipPath>\n{}{}</g>\n",
-        x, axis_, left, top, frame_width, height_, drawn, axes());
+  /// Draws the frame with what `draw` draws in it, `x` pixels to the right.
+  template <class Draw>
+  void place(kit::Canvas& canvas, double x, const Draw& draw) const {
+    canvas.begin({x, 0});
+    canvas.clip(clip(), {left, top}, frame_width, height_);
+    draw();
+    draw_axes(canvas);
+    canvas.end();
   }
 
  private:
@@ -102,18 +99,6 @@ class Frame2D {
   Point low_;
   double scale_ = 1, height_ = 0;
 };
-
-std::string svg(double width, double height, const std::string& title, const std::string& drawn) {
-  return fmt::format(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:.0f} {1:.0f}\" width=\"{0:.0f}\" "
-      "height=\"{1:.0f}\" font-family=\"sans-serif\" font-size=\"12\">\n"
-      "<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n{2}{3}</svg>\n",
-      width, height, title, drawn);
-}
-
-std::string text(double x, const std::string& words) {
-  return fmt::format("<text x=\"{:.0f}\" y=\"20\">{}</text>\n", x, words);
-}
 
 /// The border of a surface's shadow, seen along the frame's axis: every triangle is turned to face
 /// the viewer; edges between two triangles then cancel, unless both lie on one side of the edge.
@@ -150,49 +135,44 @@ std::vector<std::vector<Point>> shadow(const Surface& surface, const Frame& fram
 
 /// Of the time `part` × `end`: from dark blue over green and orange to red.
 std::string colour(double part, std::size_t end) {
-  constexpr std::array<std::array<double, 3>, 4> anchors{
+  constexpr std::array<kit::Rgb, 4> stops{
       {{40, 50, 160}, {0, 150, 120}, {240, 160, 0}, {200, 20, 40}}};
-  const double at = end > 0 ? 3 * part / static_cast<double>(end) : 0;
-  const auto i = std::min<std::size_t>(2, static_cast<std::size_t>(at));
-  std::array<int, 3> rgb{};
-  for (std::size_t k = 0; k < 3; ++k)
-    rgb[k] =
-        static_cast<int>(std::lerp(anchors[i][k], anchors[i + 1][k], at - static_cast<double>(i)));
-  return fmt::format("#{:02x}{:02x}{:02x}", rgb[0], rgb[1], rgb[2]);
+  return kit::hex_colour(kit::colour_between(stops, end > 0 ? part / static_cast<double>(end) : 0));
 }
 
-/// The paths between snapshots in as many colours as there are pieces, and dots at their ends.
-std::string paths(const Frame2D& frame, const std::vector<Snapshot>& snapshots,
-                  const std::vector<std::size_t>& dots) {
+/// Draws the paths between snapshots in as many colours as there are pieces, and dots at their
+/// ends.
+void draw_paths(kit::Canvas& canvas, const Frame2D& frame, const std::vector<Snapshot>& snapshots,
+                const std::vector<std::size_t>& dots) {
   constexpr std::size_t most_pieces = 16;
   const std::size_t last = snapshots.size() - 1, n_pieces = std::min(most_pieces, last);
-  std::string out;
   for (std::size_t piece = 0; piece < n_pieces; ++piece) {
     const std::size_t from = last * piece / n_pieces, to = last * (piece + 1) / n_pieces;
-    std::string path;
+    kit::Path path;
     for (std::size_t p = 0; p < snapshots[from].samples.size(); ++p) {
       bool goes_on = false;  // from where it was last; not where it left the frame between
       for (std::size_t i = from; i <= to; ++i) {
-        const Vec3 at = snapshots[i].samples[p].position;
-        const bool held = frame.holds(at);
-        if (held) path += frame.to(goes_on ? 'L' : 'M', frame.seen(at));
+        const Vec3 position = snapshots[i].samples[p].position;
+        const bool held = frame.holds(position);
+        if (held) {
+          const Point at = frame.at(frame.seen(position));
+          goes_on ? path.line(at) : path.move(at);
+        }
         goes_on = held;
       }
     }
-    out += fmt::format(
-        "<path fill=\"none\" stroke=\"{}\" stroke-width=\"0.8\" "
-        "stroke-opacity=\"0.7\" d=\"{}\"/>\n",
-        colour(static_cast<double>(piece) + 0.5, n_pieces), path);
+    canvas.path(path, {.fill = "none",
+                       .stroke = colour(static_cast<double>(piece) + 0.5, n_pieces),
+                       .width = 0.8,
+                       .opacity = 0.7});
   }
-  for (std::size_t i = 0; i < dots.size(); ++i) {
-    std::string path;
-    for (const Sample& sample : snapshots[dots[i]].samples)
-      if (frame.holds(sample.position)) path += frame.to('M', frame.seen(sample.position)) + "h0";
-    out +=
-        fmt::format("<path stroke=\"{}\" stroke-width=\"4\" stroke-linecap=\"round\" d=\"{}\"/>\n",
-                    colour(static_cast<double>(dots[i]), last), path);
+  for (const std::size_t dot : dots) {
+    kit::Path path;
+    for (const Sample& sample : snapshots[dot].samples)
+      if (frame.holds(sample.position)) path.move(frame.at(frame.seen(sample.position))).right(0);
+    canvas.path(path,
+                {.stroke = colour(static_cast<double>(dot), last), .width = 4, .round = true});
   }
-  return out;
 }
 
 /// A layer of voxels across an axis.
@@ -251,24 +231,24 @@ std::vector<std::vector<Point>> below(const Layer& layer, const Frame2D& frame, 
   return lines;
 }
 
-/// A path of arrows along the normals.
-std::string normals(const Layer& layer, const Frame2D& frame) {
+/// Arrows along the normals.
+kit::Path normals(const Layer& layer, const Frame2D& frame) {
   constexpr int arrows = 20;
   const int stride = std::max(1, layer.n_across() / arrows);
   const double length = 0.8 * stride * layer.field().grid.cell;
-  std::string path;
+  kit::Path path;
   for (int j = stride / 2; j < layer.n_up(); j += stride)
     for (int i = stride / 2; i < layer.n_across(); i += stride) {
       const Vec3 normal = layer.normal(i, j);
       if (normal == Vec3{}) continue;
       const Point foot = frame.seen(layer.centre(i, j)), along = frame.seen(length * normal);
       const Point tip{foot.x + along.x, foot.y + along.y};
-      const auto barb = [&](char command, double side) {
-        return frame.to(command, {tip.x - 0.3 * along.x - side * along.y,
-                                  tip.y - 0.3 * along.y + side * along.x});
+      const auto barb = [&](double side) {
+        return frame.at(
+            {tip.x - 0.3 * along.x - side * along.y, tip.y - 0.3 * along.y + side * along.x});
       };
-      path += frame.to('M', foot) + frame.to('L', tip) + barb('M', 0.15) + frame.to('L', tip) +
-              barb('L', -0.15);
+      path.move(frame.at(foot)).line(frame.at(tip));
+      path.move(barb(0.15)).line(frame.at(tip)).line(barb(-0.15));
     }
   return path;
 }
@@ -301,27 +281,25 @@ Bounds window_of(const Scene& scene, const std::vector<Snapshot>& snapshots) {
 std::string slice_svg(const Field& field, int axis, double at) {
   const Layer layer(field, axis, at);
   const Frame2D frame(axis, field.grid.box());
-  // From the outside in, each over the last: blue outside of the surface, grey inside.
-  std::string drawn;
-  for (int step = 6; step >= -6; --step) {
-    const int light = 130 + 20 * step, grey = 120 + 10 * step;
-    const std::string fill = step > 0 ? fmt::format("#{:02x}{:02x}ff", light, 165 + 13 * step)
-                                      : fmt::format("#{0:02x}{0:02x}{0:02x}", grey);
-    const std::string look = fmt::format("fill=\"{}\"{}", fill,
-                                         step == 0 ? " stroke=\"#000\" stroke-width=\"1.5\"" : "");
-    drawn += frame.closed(below(layer, frame, step * field.thickness / 6), look.c_str());
-  }
-  if (field.content() == Content::distance_and_normal)
-    drawn += fmt::format(
-        "<path clip-path=\"url(#c{})\" fill=\"none\" stroke=\"#000\" stroke-width=\"0.8\" "
-        "d=\"{}\"/>\n",
-        axis, normals(layer, frame));
-  return svg(
-      frame.width(), frame.height(),
-      text(left, fmt::format("distance and normals at {} = {:.6g}; a shade is {:.4g} wide, black "
-                             "is the surface",
-                             "xyz"[axis], layer.place(), field.thickness / 6)),
-      frame.placed(0, drawn));
+  kit::Canvas canvas({.width = frame.width(), .height = frame.height()});
+  canvas.text({left, 20},
+              fmt::format("distance and normals at {} = {:.6g}; a shade is {:.4g} wide, black is "
+                          "the surface",
+                          "xyz"[axis], layer.place(), field.thickness / 6));
+  frame.place(canvas, 0, [&] {
+    // From the outside in, each over the last: blue outside of the surface, grey inside.
+    for (int step = 6; step >= -6; --step) {
+      const double light = 130 + 20 * step, grey = 120 + 10 * step;
+      kit::Look look{.fill = kit::hex_colour(step > 0 ? kit::Rgb{light, 165.0 + 13 * step, 255}
+                                                      : kit::Rgb{grey, grey, grey})};
+      if (step == 0) look.stroke = "black", look.width = 1.5;
+      frame.draw_closed(canvas, below(layer, frame, step * field.thickness / 6), look);
+    }
+    if (field.content() == Content::distance_and_normal)
+      canvas.path(normals(layer, frame),
+                  {.fill = "none", .stroke = "black", .width = 0.8, .clip = frame.clip()});
+  });
+  return canvas.svg();
 }
 
 std::string paths_svg(const Scene& scene, const std::vector<Snapshot>& snapshots) {
@@ -332,35 +310,40 @@ std::string paths_svg(const Scene& scene, const std::vector<Snapshot>& snapshots
   for (std::size_t i = 0; i <= n_dots; ++i) dots.push_back(n_dots == 0 ? 0 : last * i / n_dots);
   const auto time = [&](std::size_t snapshot) { return snapshots[snapshot].step * scene.dt; };
   const double end = time(last);
+  std::vector<Frame2D> frames;
+  for (const int axis : scene.outputs.axes) frames.emplace_back(axis, window);
   double width = 0, height = 0;
-  std::string drawn, key;
-  for (std::size_t i = 0; i < dots.size(); ++i) {
-    const double x = left + 70.0 * static_cast<double>(i);
-    key += fmt::format("<circle cx=\"{:.0f}\" cy=\"16\" r=\"4\" fill=\"{}\"/>", x + 4,
-                       colour(static_cast<double>(dots[i]), last));
-    key += text(x + 12, fmt::format("t = {:.4g}", time(dots[i])));
-  }
-  bool moved = false;
-  for (const int axis : scene.outputs.axes) {
-    const Frame2D frame(axis, window);
-    std::string objects;
-    for (const SceneObject& object : scene.objects) {
-      Frame stands = object.frame;
-      objects += frame.closed(shadow(object.surface, stands, frame), "fill=\"#bbb\"");
-      if (!stands.is_moving()) continue;
-      moved = true;
-      stands.advance(end);
-      objects += frame.closed(shadow(object.surface, stands, frame),
-                              "fill=\"none\" stroke=\"#888\" stroke-width=\"0.8\"");
-    }
-    drawn += frame.placed(width, objects + paths(frame, snapshots, dots));
+  for (const Frame2D& frame : frames) {
     width += frame.width();
     height = std::max(height, frame.height());
   }
+  kit::Canvas canvas({.width = width, .height = height});
+  for (std::size_t i = 0; i < dots.size(); ++i) {
+    const double x = left + 70.0 * static_cast<double>(i);
+    canvas.circle({x + 4, 16}, 4, {.fill = colour(static_cast<double>(dots[i]), last)});
+    canvas.text({x + 12, 20}, fmt::format("t = {:.4g}", time(dots[i])));
+  }
+  bool moved = false;
+  double x = 0;
+  for (const Frame2D& frame : frames) {
+    frame.place(canvas, x, [&] {
+      for (const SceneObject& object : scene.objects) {
+        Frame stands = object.frame;
+        frame.draw_closed(canvas, shadow(object.surface, stands, frame), {.fill = "#bbb"});
+        if (!stands.is_moving()) continue;
+        moved = true;
+        stands.advance(end);
+        frame.draw_closed(canvas, shadow(object.surface, stands, frame),
+                          {.fill = "none", .stroke = "#888", .width = 0.8});
+      }
+      draw_paths(canvas, frame, snapshots, dots);
+    });
+    x += frame.width();
+  }
   if (moved)
-    key += text(left + 70.0 * static_cast<double>(dots.size()),
+    canvas.text({left + 70.0 * static_cast<double>(dots.size()), 20},
                 fmt::format("outline: t = {:.4g}", end));
-  return svg(width, height, key, drawn);
+  return canvas.svg();
 }
 
 }  // namespace particles

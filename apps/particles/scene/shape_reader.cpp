@@ -1,6 +1,6 @@
 #include "apps/particles/scene/box_union.hpp"
 #include "apps/particles/scene/readers.hpp"
-#include "apps/surface_file/read_surface.hpp"
+#include "collide/read_surface.hpp"
 #include "collide/dn_field/shapes.hpp"
 #include "runtime/core/error.hpp"
 
@@ -61,7 +61,7 @@ Surface read_file(const Node& node, const std::string& folder) {
   if (std::filesystem::is_directory(path, unknown))
     node.blame(path + ": is a directory; give the path of a file .obj, .ply or .stl");
   try {
-    Surface surface = apps::read_surface(path);
+    Surface surface = tess::dn::read_surface(path);
     tess::dn::validate(surface);
     return surface;
   } catch (const tess::Error& error) {

@@ -34,7 +34,7 @@ inline PlaneSampler plane_sampler_of(const Field& field) {
 
 namespace lanes {
 
-using U = std::uint32_t __attribute__((vector_size(4 * width)));
+using U = simd::Vector<std::uint32_t, width>;
 
 /// The distances at the cells' middles and the normals.
 inline Stored decode(const EntryLayout& layout, I entry) {

@@ -1,21 +1,14 @@
-// Several particles in one vector, one in each lane. The types are GCC vectors, so that one source
-// serves every instruction set and gives the same bits on all of them: the compiler does not fuse a
-// multiplication and an addition (-ffp-contract=off), and fma() is fused everywhere. Intrinsics
-// appear only where the language has no operation: gather, square root, fma, "any". Private to
-// dn_field.
+// Several particles in one vector, one in each lane (runtime/core/simd.hpp): what the loops over
+// particles add to it is gather, points and vectors, and turns. Private to dn_field.
 #pragma once
 
 #include "collide/dn_field/particles.hpp"
-
-#include <cmath>
-#include <cstdint>
-#include <cstring>
-
-#ifdef __AVX2__
-#include <immintrin.h>
-#endif
+#include "runtime/core/simd.hpp"
 
 namespace tess::dn::lanes {
+
+using simd::abs, simd::any, simd::bits, simd::fma, simd::load, simd::max, simd::min, simd::only,
+    simd::sqrt, simd::store;
 
 #ifdef __AVX512F__
 inline constexpr int width = 8;
@@ -23,10 +16,10 @@ inline constexpr int width = 8;
 inline constexpr int width = 4;  // g++ takes wider vectors through memory
 #endif
 
-using D = double __attribute__((vector_size(8 * width)));
-using F = float __attribute__((vector_size(4 * width)));
-using I = std::int32_t __attribute__((vector_size(4 * width)));  // also the mask of F
-using L = std::int64_t __attribute__((vector_size(8 * width)));  // also the mask of D
+using D = simd::Vector<double, width>;
+using F = simd::Vector<float, width>;
+using I = simd::Vector<std::int32_t, width>;  // also the mask of F
+using L = simd::Vector<std::int64_t, width>;  // also the mask of D
 
 /// Calls make.operator()<V>() for the one of `Values` that equals `value`: picks a loop that is
 /// compiled for it.
@@ -35,17 +28,6 @@ auto with(decltype(First) value, const auto& make) {
   if constexpr (sizeof...(Rest) > 0)
     if (value != First) return with<Rest...>(value, make);
   return make.template operator()<First>();
-}
-
-template <class V, class T>
-inline V load(const T* from) {
-  V v;
-  std::memcpy(&v, from, sizeof v);
-  return v;
-}
-template <class V, class T>
-inline void store(T* to, V v) {
-  std::memcpy(to, &v, sizeof v);
 }
 
 inline D to_double(F v) {
@@ -67,26 +49,12 @@ inline L widen(I mask) {
 }
 
 inline D all(double v) {
-  return v - D{};  // a sum would make a zero of -0
+  return simd::all<D>(v);
 }
 inline F all(float v) {
-  return v - F{};
+  return simd::all<F>(v);
 }
 
-inline D abs(D v) {
-  return (D)((L)v & (L{} + 0x7FFFFFFFFFFFFFFF));
-}
-inline F abs(F v) {
-  return (F)((I)v & (I{} + 0x7FFFFFFF));
-}
-template <class V>
-inline V min(V a, V b) {
-  return a < b ? a : b;
-}
-template <class V>
-inline V max(V a, V b) {
-  return a > b ? a : b;
-}
 /// Keeps the mask as a value. Otherwise g++ 12 moves a conjunction of comparisons to its use and
 /// computes it there lane by lane.
 inline L settled(L mask) {
@@ -96,79 +64,9 @@ inline L settled(L mask) {
   return mask;
 }
 
-/// v where the mask holds, otherwise zero.
-template <class M, class V>
-inline V only(M mask, V v) {
-  return (V)(mask & (M)v);
-}
-
-inline bool any(L mask) {
-#ifdef __AVX512F__
-  return _mm512_test_epi64_mask((__m512i)mask, (__m512i)mask) != 0;
-#elif defined(__AVX2__)
-  return _mm256_testz_si256((__m256i)mask, (__m256i)mask) == 0;
-#else
-  std::int64_t found = 0;
-  for (int i = 0; i < width; ++i) found |= mask[i];
-  return found != 0;
-#endif
-}
-
-inline bool any(I mask) {
-#ifdef __AVX512F__
-  return _mm256_testz_si256((__m256i)mask, (__m256i)mask) == 0;
-#elif defined(__AVX2__)
-  return _mm_testz_si128((__m128i)mask, (__m128i)mask) == 0;
-#else
-  std::int32_t found = 0;
-  for (int i = 0; i < width; ++i) found |= mask[i];
-  return found != 0;
-#endif
-}
-
-/// One bit a lane.
-inline unsigned bits(I mask) {
-#ifdef __AVX512F__
-  return static_cast<unsigned>(_mm256_movemask_ps((__m256)mask));
-#elif defined(__AVX2__)
-  return static_cast<unsigned>(_mm_movemask_ps((__m128)mask));
-#else
-  unsigned found = 0;
-  for (int i = 0; i < width; ++i) found |= mask[i] != 0 ? 1U << i : 0U;
-  return found;
-#endif
-}
-
 inline F floor(F v) {
   const F cut = __builtin_convertvector(__builtin_convertvector(v, I), F);
   return cut > v ? cut - 1.0F : cut;
-}
-
-inline D sqrt(D v) {
-#ifdef __AVX512F__
-  return (D)_mm512_maskz_sqrt_pd(0xFF, (__m512d)v);  // the plain one warns in g++ 12
-#else
-  for (int i = 0; i < width; ++i) v[i] = std::sqrt(v[i]);
-  return v;
-#endif
-}
-inline F sqrt(F v) {
-#ifdef __AVX512F__
-  return (F)_mm256_sqrt_ps((__m256)v);
-#else
-  for (int i = 0; i < width; ++i) v[i] = std::sqrt(v[i]);
-  return v;
-#endif
-}
-
-/// a b + c, rounded once.
-inline D fma(D a, D b, D c) {
-#ifdef __AVX512F__
-  return (D)_mm512_fmadd_pd((__m512d)a, (__m512d)b, (__m512d)c);
-#else
-  for (int i = 0; i < width; ++i) c[i] = std::fma(a[i], b[i], c[i]);
-  return c;
-#endif
 }
 
 inline I gather(const std::uint32_t* table, I at) {
@@ -206,7 +104,7 @@ struct Two {
   V first, second;
 };
 #ifdef __AVX2__
-using Half = std::int64_t __attribute__((vector_size(32)));
+using Half = simd::Vector<std::int64_t, 4>;
 inline Half gather_four(const std::uint32_t* table, __m128i at) {
   const __m256i zero = _mm256_setzero_si256(), every = _mm256_cmpeq_epi64(zero, zero);
   return (Half)_mm256_mask_i32gather_epi64(zero, reinterpret_cast<const long long*>(table), at,

@@ -4,6 +4,7 @@
 #include "runtime/balance/honour.hpp"
 #include "runtime/balance/relabel.hpp"
 #include "runtime/core/error.hpp"
+#include "runtime/core/hilbert.hpp"
 
 #include <algorithm>
 
@@ -40,29 +41,6 @@ struct Grid {
 };
 
 }  // namespace
-
-std::uint64_t hilbert_key(std::array<std::uint32_t, 3> x, std::size_t n_axes, unsigned n_bits) {
-  if (n_axes == 0) return 0;
-  for (std::uint32_t q = 1U << (n_bits - 1); q > 1; q >>= 1U) {  // undo the rotations of each level
-    for (std::size_t k = 0; k < n_axes; ++k) {
-      if (x[k] & q) {
-        x[0] ^= q - 1;
-      } else {
-        const std::uint32_t swapped = (x[0] ^ x[k]) & (q - 1);
-        x[0] ^= swapped;
-        x[k] ^= swapped;
-      }
-    }
-  }
-  for (std::size_t k = 1; k < n_axes; ++k) x[k] ^= x[k - 1];  // Gray code
-  std::uint32_t flip = 0;
-  for (std::uint32_t q = 1U << (n_bits - 1); q > 1; q >>= 1U)
-    if (x[n_axes - 1] & q) flip ^= q - 1;
-  std::uint64_t key = 0;
-  for (unsigned bit = n_bits; bit-- > 0;)
-    for (std::size_t k = 0; k < n_axes; ++k) key = key << 1U | (((x[k] ^ flip) >> bit) & 1U);
-  return key;
-}
 
 Assignment hilbert(const Snapshot& s) {
   if (s.elements.position.empty() && s.elements.size() > 0)

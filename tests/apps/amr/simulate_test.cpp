@@ -3,6 +3,7 @@
 
 #include "tests/support/adversarial.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/run.hpp"
 
 using namespace amr;
 
@@ -102,16 +103,12 @@ TEST_CASE("errors fall with the level of the tree and with the order", "[apps][a
 }
 
 TEST_CASE("where messages have a fixed cost, cells have one", "[apps][amr]") {
-  tess::SimulatedOptions options;
-  options.n_pes = 1;
-  options.cost = tess::Time(1);
-  tess::Setup setup{tess::make_simulated_machine(options), {}};
   Settings settings = small(0, 0);
   settings.problem.n_cells = 32;
   settings.problem.n_steps = 4;
   settings.problem.complete();
   Outcome outcome;
-  CHECK(tess::run(setup, [&] { return simulate(settings, outcome); }) == 0);
+  CHECK(tests::run("pes=1,cost=1ns", [&] { return simulate(settings, outcome); }).exit_code == 0);
   CHECK(outcome.seconds / static_cast<double>(outcome.cell_steps) == Approx(30e-9).epsilon(0.1));
 }
 

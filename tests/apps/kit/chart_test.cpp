@@ -208,7 +208,7 @@ TEST_CASE("a timeline draws each bar in its row, to scale", "[apps][plot]") {
   const auto elements = read_xml(slurp(scratch.path("t.svg")));
   std::vector<double> widths, heights;
   for (const XmlElement& e : elements) {
-    if (e.name != "rect" || e.attributes.find("class=") == std::string::npos) continue;
+    if (e.name != "rect" || e.attributes.find("fill=\"white\"") != std::string::npos) continue;
     const auto number = [&](const char* name) {
       return std::strtod(
           e.attributes.c_str() + e.attributes.find(name) + std::string(name).size() + 2, nullptr);
@@ -222,7 +222,7 @@ TEST_CASE("a timeline draws each bar in its row, to scale", "[apps][plot]") {
   CHECK(heights[0] == heights[1]);
   CHECK(heights[2] > heights[1]);
   CHECK(count(elements, [](const XmlElement& e) {
-          return e.name == "rect" && e.attributes.find("class=\"busy\"") != std::string::npos;
+          return e.name == "rect" && e.attributes.find("fill=\"#0072b2\"") != std::string::npos;
         }) == 2);
   CHECK(n_texts(elements, wild) == 2);  // the title and a row
   CHECK(n_texts(elements, "ms") == 1);

@@ -5,6 +5,7 @@
 #include "apps/leanmd/study.hpp"
 #include "tests/support/adversarial.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/run.hpp"
 
 using namespace leanmd;
 
@@ -87,27 +88,23 @@ TEST_CASE("a run that cannot continue says why, and ends early", "[leanmd]") {
     CHECK(outcome.error.find("step 1, atom ") == 0);
     CHECK_FALSE(outcome.is_wrong);
     CHECK(outcome.energies.size() == 1);
-    CHECK(summary({options, outcome}).find(" cells, 0 steps: ") != std::string::npos);
+    CHECK(table(options, outcome).find(" cells, 0 steps: ") != std::string::npos);
     CHECK(outcome.error == run(options, 1, 0).error);
   }
 }
 
 TEST_CASE("extreme simulations run well or are refused", "[leanmd]") {
-  tess::SimulatedOptions machine;
-  machine.n_pes = 2;
-  tess::Setup setup;
-  setup.machine = tess::make_simulated_machine(machine);
   kit::Cases<> report;
-  REQUIRE(tess::run(setup, [&]() -> tess::Task { return run_stability(report); }) == 0);
+  REQUIRE(tests::run("pes=2", [&] { return stability_report(report); }).exit_code == 0);
   CHECK(report.rows().size() >= 20);
-  CHECK(report.n_failed() == 0);  // each is printed
+  CHECK(report.n_failed() == 0);
 }
 
 TEST_CASE("the energy drift is of second order in the time step", "[leanmd]") {
   Options options = small({2, 2, 2});
   options.check = options.reverse = false;
   tess::Setup setup = tess::test::adversarial(3, 4);
-  std::vector<Row> rows;
+  std::vector<StudyRow> rows;
   REQUIRE(tess::run(setup, [&]() -> tess::Task { return study(options, start, rows); }) == 0);
   REQUIRE(rows.size() == 5);
   CHECK(fitted_order(rows).value() == Approx(2).margin(0.1));
@@ -118,11 +115,11 @@ TEST_CASE("a study marks wrong results, and has no order without two rows", "[le
   options.problem.cutoff = 3;
   options.problem.skin = -2;  // so a cell of edge 1.3 reaches only the next one
   tess::Setup setup = tess::test::adversarial(3, 4);
-  std::vector<Row> rows;
+  std::vector<StudyRow> rows;
   REQUIRE(tess::run(setup, [&]() -> tess::Task { return study(options, start, rows); }) == 0);
   REQUIRE(rows.size() == 5);
-  for (const Row& row : rows) CHECK(row.outcome.is_wrong);
+  for (const StudyRow& row : rows) CHECK(row.is_wrong);
   CHECK_FALSE(fitted_order(rows));
-  CHECK(report().json(rows).members().front().value.at("energy_drift").kind() ==
+  CHECK(study_rows().json(rows).members().front().value.at("energy_drift").kind() ==
         kit::Json::Kind::null);
 }

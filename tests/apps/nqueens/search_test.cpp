@@ -3,6 +3,7 @@
 
 #include "tests/support/adversarial.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/run.hpp"
 
 using namespace nqueens;
 
@@ -52,13 +53,9 @@ TEST_CASE("the first solution is the leftmost one under any schedule", "[apps][n
 
 TEST_CASE("where messages have a fixed cost, boards have one", "[apps][nqueens]") {
   const auto seconds = [](std::int32_t n, bool first) {
-    tess::SimulatedOptions options;
-    options.n_pes = 1;
-    options.cost = tess::Time(100);
-    tess::Setup setup{tess::make_simulated_machine(options), {}};
     Outcome outcome;
-    CHECK(tess::run(setup, [&] { return search({.n = n, .grain = n, .first = first}, outcome); }) ==
-          0);
+    const auto main = [&] { return search({.n = n, .grain = n, .first = first}, outcome); };
+    CHECK(tests::run("pes=1,cost=100ns", main).exit_code == 0);
     CHECK(outcome.n_tasks == 1);
     return outcome.seconds / static_cast<double>(outcome.count.n_boards);
   };
@@ -71,15 +68,11 @@ TEST_CASE("with priorities one PE looks at few boards that one serial search wou
   std::uint64_t serial = 0;
   (void)first_below(Board(), 12, serial);
   const auto boards = [](bool prioritised) {
-    tess::SimulatedOptions options;
-    options.n_pes = 1;
-    options.cost = tess::Time(100);
-    tess::Setup setup{tess::make_simulated_machine(options), {}};
     Outcome outcome;
-    const int code = tess::run(setup, [&] {
+    const auto main = [&] {
       return search({.n = 12, .grain = 7, .first = true, .prioritised = prioritised}, outcome);
-    });
-    CHECK(code == 0);
+    };
+    CHECK(tests::run("pes=1,cost=100ns", main).exit_code == 0);
     return outcome;
   };
   const Outcome with = boards(true), without = boards(false);

@@ -1,6 +1,7 @@
 // The loops of the library once more, under another name and compiled for the oldest x86-64: no
 // AVX, no gathers, no fused operations.
 #define lanes plain_lanes
+#define simd plain_simd
 
 #include "tests/collide/dn_field/plain_lanes.hpp"
 

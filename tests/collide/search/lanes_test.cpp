@@ -1,7 +1,7 @@
-// Vector code and plain code give the same bits.
+// Vector code and loops give the same bits.
 #include "collide/search/lanes.hpp"
 
-#include "collide/search/grid.hpp"
+#include "collide/search/region_grid.hpp"
 #include "tests/support/catch.hpp"
 
 #include <algorithm>
@@ -55,6 +55,18 @@ void check_compare() {
   REQUIRE((found == expected));
 }
 
+template <class Real, std::size_t D>
+void check_code(const RegionGrid<Real, D>& grid, const Box<Real, D>& box) {
+  const Box<std::int32_t, D> cells = grid.cells(box);
+  std::uint32_t two = 0;
+  bool has_more = false;
+  for (std::size_t k = 0; k < D; ++k) {
+    two |= cells.hi[k] != cells.lo[k] ? 1U << k : 0U;
+    has_more = has_more || cells.hi[k] - cells.lo[k] > 1;
+  }
+  REQUIRE(grid.code(box) == (has_more ? grid.large : grid.number(cells.lo) << D | two));
+}
+
 }  // namespace
 
 TEST_CASE("a comparison with vectors finds what overlap() finds", "[collide]") {
@@ -64,35 +76,9 @@ TEST_CASE("a comparison with vectors finds what overlap() finds", "[collide]") {
   check_compare<double, Touching::does_not_count>();
 }
 
-TEST_CASE("the plain form of each vector operation agrees with the widest one", "[collide]") {
-  using Plain = PlainWide<double, Wide<double>::width>;
-  constexpr std::size_t width = Wide<double>::width;
-  constexpr Mask all = (Mask{1} << width) - 1;
-  std::mt19937_64 random(2);
-  std::array<double, width> a{}, b{};
-  std::array<std::uint32_t, 16> bits{};
-  for (int round = 0; round < 1000; ++round) {
-    for (double& x : a) x = static_cast<double>(random() % 4);
-    for (double& x : b) x = static_cast<double>(random() % 4);
-    for (std::uint32_t& x : bits) x = static_cast<std::uint32_t>(random() % 8);
-    const auto va = Wide<double>::load(a.data()), vb = Wide<double>::load(b.data());
-    const auto pa = Plain::load(a.data()), pb = Plain::load(b.data());
-    const Mask among = static_cast<Mask>(random()) & all;
-    REQUIRE(Wide<double>::less<true>(among, va, vb) == Plain::less<true>(among, pa, pb));
-    REQUIRE(Wide<double>::less<false>(among, va, vb) == Plain::less<false>(among, pa, pb));
-    REQUIRE(Wide<double>::disjoint(among, bits.data(), 5) ==
-            Plain::disjoint(among, bits.data(), 5));
-    REQUIRE(Wide<double>::differ(among, bits.data(), 3) == Plain::differ(among, bits.data(), 3));
-    std::array<std::uint32_t, 16> wide{}, plain{};
-    const auto n = Wide<double>::compress(wide.data(), among, bits.data()) - wide.data();
-    REQUIRE(n == Plain::compress(plain.data(), among, bits.data()) - plain.data());
-    REQUIRE(std::equal(wide.begin(), wide.begin() + n, plain.begin()));
-  }
-}
-
 TEST_CASE("a grid gives the cell of a coordinate, clamped, with vectors and without", "[collide]") {
   constexpr double inf = std::numeric_limits<double>::infinity();
-  const Grid<double, 3> grid({{0, -1, 1e12}, {1, 1, 1e12 + 1}}, {10, 7, 3});
+  const RegionGrid<double, 3> grid({{0, -1, 1e12}, {1, 1, 1e12 + 1}}, {10, 7, 3});
   std::mt19937_64 random(3);
   const std::array values{-inf, -1e300, -1.0, -1e-9,      0.0,   0.1, 0.3,
                           0.7,  1.0,    1e12, 1e12 + 0.5, 1e300, inf};
@@ -102,7 +88,7 @@ TEST_CASE("a grid gives the cell of a coordinate, clamped, with vectors and with
       box.lo[k] = values[random() % values.size()];
       box.hi[k] = std::max(box.lo[k], values[random() % values.size()]);
     }
-    const CellRange<3> cells = grid.cells(box);
+    const Box<std::int32_t, 3> cells = grid.cells(box);
     for (std::size_t k = 0; k < 3; ++k) {
       REQUIRE(cells.lo[k] == grid.cell(box.lo[k], k));
       REQUIRE(cells.hi[k] == grid.cell(box.hi[k], k));
@@ -110,5 +96,9 @@ TEST_CASE("a grid gives the cell of a coordinate, clamped, with vectors and with
       REQUIRE(cells.lo[k] <= cells.hi[k]);
       REQUIRE(cells.hi[k] < grid.n_cells()[k]);
     }
+    check_code(grid, box);
+    const RegionGrid<float, 2> flat({{0, -1}, {1, 1}}, {10, 7});
+    check_code(flat, {{static_cast<float>(box.lo[0]), static_cast<float>(box.lo[1])},
+                      {static_cast<float>(box.hi[0]), static_cast<float>(box.hi[1])}});
   }
 }

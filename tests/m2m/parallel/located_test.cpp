@@ -6,10 +6,10 @@
 #include "m2m/read_mesh.hpp"
 #include "m2m/search/nearest_vertex.hpp"
 #include "m2m/transfer.hpp"
-#include "runtime/machine/simulated.hpp"
 #include "runtime/testing.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/n_seeds.hpp"
+#include "tests/support/run.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -243,8 +243,7 @@ TEST_CASE("NaN passes through, and is counted", "[m2m][located]") {
   for (const bool clamp : {false, true}) {
     c.options.clamp = clamp;
     Located got;
-    Setup setup{make_simulated_machine({}), {}};
-    REQUIRE(run(setup, [&]() -> Task { return transfer_case(c, 5, got); }) == 0);
+    REQUIRE(tests::run("pes=4", [&] { return transfer_case(c, 5, got); }).exit_code == 0);
     const Located want = by_force(c);
     CHECK(count_nan_rows(want.values) > 0);
     CHECK(count_nan_rows(got.values) == count_nan_rows(want.values));
@@ -257,8 +256,7 @@ TEST_CASE("a tolerance that is no length is refused", "[m2m][located]") {
   for (const double tolerance : {-1.0, std::numeric_limits<double>::quiet_NaN()}) {
     LocatedCase c = overhanging();
     c.options.tolerance = tolerance;
-    Setup setup{make_simulated_machine({}), {}};
     Located got;
-    CHECK(run(setup, [&]() -> Task { return transfer_case(c, 2, got); }) == 2);
+    CHECK(tests::run("pes=4", [&] { return transfer_case(c, 2, got); }).exit_code == 2);
   }
 }

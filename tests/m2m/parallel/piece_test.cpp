@@ -2,10 +2,10 @@
 #include "m2m/coupling.hpp"
 #include "m2m/kuhn.hpp"
 #include "m2m/mesh_parts.hpp"
-#include "runtime/machine/simulated.hpp"
 #include "runtime/testing.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/n_seeds.hpp"
+#include "tests/support/run.hpp"
 
 #include <algorithm>
 #include <cstdint>
@@ -182,9 +182,6 @@ TEST_CASE("a round that pieces start reaches those that no source piece gives va
 
 TEST_CASE("a piece sends to itself as any chare does", "[m2m]") {
   int n_received = 0;
-  SimulatedOptions machine;
-  machine.n_pes = 3;
-  Setup setup{make_simulated_machine(machine), {}};
-  REQUIRE(run(setup, [&]() -> Task { return apply_three_times(n_received); }) == 0);
+  REQUIRE(tests::run("pes=3", [&] { return apply_three_times(n_received); }).exit_code == 0);
   CHECK(n_received == 3 * 5);
 }

@@ -3,7 +3,6 @@
 #include "runtime/balance/metrics.hpp"
 #include "runtime/balance/strategies/diffusion.hpp"
 #include "runtime/balance/strategies/gossip.hpp"
-#include "runtime/balance/strategies/hilbert.hpp"
 #include "runtime/balance/strategies/refine.hpp"
 #include "runtime/balance/strategy.hpp"
 #include "tests/support/catch.hpp"
@@ -84,30 +83,6 @@ TEST_CASE("a PE of the gossip knows a bounded number of others", "[balance]") {
   GossipPe pe(LocalPe({}), 0, 1.0, 7);
   for (std::size_t i = 1; i < 1000; ++i) pe.hear({{i, {}}});
   CHECK(pe.tell().size() == GossipPe::most_known);
-}
-
-TEST_CASE("the Hilbert curve visits each cell once and steps to a neighbour", "[balance]") {
-  for (const std::size_t n_axes : {1U, 2U, 3U}) {
-    const unsigned bits = 3;
-    const std::size_t n_cells = std::size_t{1} << (bits * n_axes);
-    std::vector<std::array<std::uint32_t, 3>> at(n_cells);
-    std::vector<bool> seen(n_cells, false);
-    for (std::uint32_t c = 0; c < n_cells; ++c) {
-      const std::array<std::uint32_t, 3> cell{c & 7U, c >> 3U & 7U, c >> 6U};
-      const std::uint64_t key = hilbert_key(cell, n_axes, bits);
-      REQUIRE(key < n_cells);
-      REQUIRE_FALSE(seen[key]);
-      seen[key] = true;
-      at[key] = cell;
-    }
-    for (std::size_t k = 1; k < n_cells; ++k) {
-      std::uint32_t steps = 0;
-      for (std::size_t axis = 0; axis < 3; ++axis)
-        steps += at[k][axis] > at[k - 1][axis] ? at[k][axis] - at[k - 1][axis]
-                                               : at[k - 1][axis] - at[k][axis];
-      REQUIRE(steps == 1);
-    }
-  }
 }
 
 TEST_CASE("cuts of space keep a stencil's neighbours together, in balance", "[balance]") {

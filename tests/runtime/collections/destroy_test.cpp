@@ -1,9 +1,9 @@
 // The end of arrays and groups: what is freed, and the error texts of later uses.
 #include "runtime/balance.hpp"
-#include "runtime/machine/simulated.hpp"
 #include "runtime/runtime.hpp"
 #include "runtime/when.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/run.hpp"
 
 #include <malloc.h>
 #ifdef __SANITIZE_ADDRESS__
@@ -78,21 +78,9 @@ tess::Task use_and_end_often(int n_rounds, std::vector<std::size_t>& bytes) {
   }
 }
 
-struct Ending {
-  int exit_code = 0;
-  std::string report;
-};
 template <class Main>
-Ending run(std::int32_t n_pes, Main main) {
-  tess::Setup setup;
-  tess::SimulatedOptions options;
-  options.n_pes = n_pes;
-  options.cost = tess::Time(100);
-  setup.machine = tess::make_simulated_machine(options);
-  Ending ending;
-  setup.options.report = [&ending](const std::string& line) { ending.report += line + "\n"; };
-  ending.exit_code = tess::run(setup, main);
-  return ending;
+tests::Ending run(std::int32_t n_pes, Main main) {
+  return tests::run(tess::text("pes=", n_pes, ",cost=100ns"), std::move(main));
 }
 
 TEST_CASE("ten thousand arrays, groups and balancers that end leave no memory behind",
@@ -104,7 +92,8 @@ TEST_CASE("ten thousand arrays, groups and balancers that end leave no memory be
 #endif
   std::vector<std::size_t> bytes;
   bytes.reserve(n_rounds / 1000);
-  const Ending ending = run(4, [&]() -> tess::Task { return use_and_end_often(n_rounds, bytes); });
+  const tests::Ending ending =
+      run(4, [&]() -> tess::Task { return use_and_end_often(n_rounds, bytes); });
   CHECK(ending.exit_code == 0);
   CHECK(ending.report == "");
   REQUIRE(bytes.size() == n_rounds / 1000);
@@ -127,7 +116,7 @@ class Waiter : public tess::Chare<Waiter, tess::Index1> {
 
 TEST_CASE("a coroutine that waits for a message of its destroyed array is reported",
           "[runtime][destroy]") {
-  const Ending ending = run(2, [] {
+  const tests::Ending ending = run(2, [] {
     const auto waiters = tess::create<Waiter>(tess::range(2));
     waiters[{1}].send<&Waiter::wait>();
     waiters[{1}].send<&Waiter::wait>();
@@ -154,7 +143,7 @@ TEST_CASE(
     "what is sent to a destroyed array is counted and reported, however often it was destroyed",
     "[runtime][destroy]") {
   for (const int n_ends : {1, 3}) {
-    const Ending ending = run(3, [n_ends]() -> tess::Task { return send_late(n_ends); });
+    const tests::Ending ending = run(3, [n_ends]() -> tess::Task { return send_late(n_ends); });
     CHECK(ending.exit_code == 0);
     CHECK(ending.report ==
           "tessera: 3 messages to elements that had been destroyed were not delivered\n");
@@ -204,7 +193,7 @@ TEST_CASE("a destructor inserts at its own index, or sends there", "[runtime][de
     for (int from = 0; from < n_pes; ++from)
       for (const bool rises : {true, false}) {
         int life = 0, sum = 0;
-        const Ending ending =
+        const tests::Ending ending =
             run(n_pes, [&]() -> tess::Task { return rise(from, rises, life, sum); });
         INFO(n_pes << " PEs, on " << from << (rises ? ", inserts" : ", sends") << ending.report);
         CHECK(ending.exit_code == 0);
@@ -259,7 +248,7 @@ tess::Task end_from_within() {
 }
 
 TEST_CASE("an array and a group are ended by their own members", "[runtime][destroy]") {
-  const Ending ending = run(3, []() -> tess::Task { return end_from_within(); });
+  const tests::Ending ending = run(3, []() -> tess::Task { return end_from_within(); });
   CHECK(ending.exit_code == 0);
 }
 
@@ -274,7 +263,7 @@ TEST_CASE(
     "the message that ends an earlier life's wait at the barrier does not end the next life's",
     "[runtime][destroy][balance]") {
   Sleeper::n_resumed = 0;
-  const Ending ending = run(1, [] {
+  const tests::Ending ending = run(1, [] {
     const auto sleepers = tess::create<Sleeper>(tess::range(1));
     tess::start_balancing(sleepers, {.strategy = "greedy"});
     sleepers[{0}].send<&Sleeper::rest>();
@@ -321,7 +310,7 @@ tess::Task leave_by_multicast() {
 TEST_CASE("a member that waits after destroy() receives the multicasts of its section",
           "[runtime][destroy]") {
   Leaving::n_left = 0;
-  const Ending ending = run(2, []() -> tess::Task { return leave_by_multicast(); });
+  const tests::Ending ending = run(2, []() -> tess::Task { return leave_by_multicast(); });
   CHECK(ending.exit_code == 0);
   CHECK(ending.report == "");
   CHECK(Leaving::n_left == 3);
@@ -332,19 +321,14 @@ TEST_CASE("an element that waits after destroy() receives the broadcasts of its 
   for (std::uint64_t seed = 0; seed < 100; ++seed) {
     INFO("seed " << seed);
     Leaving::n_left = 0;
-    tess::Setup setup;
-    tess::SimulatedOptions options;
-    options.n_pes = 4;
-    options.seed = seed;
-    options.cost = tess::Time(100);
-    setup.machine = tess::make_simulated_machine(options);
-    setup.options.report = [](const std::string&) {};  // moves may come too late
-    CHECK(tess::run(setup, [] {
-            const auto all = tess::create<Leaving>(tess::range(6));
-            for (int x = 0; x < 6; ++x) all[{x}].send<&Leaving::hop>(x + 1);
-            all.broadcast<&Leaving::leave>();
-            all.broadcast<&Leaving::put>();
-          }) == 0);
+    const auto main = [] {
+      const auto all = tess::create<Leaving>(tess::range(6));
+      for (int x = 0; x < 6; ++x) all[{x}].send<&Leaving::hop>(x + 1);
+      all.broadcast<&Leaving::leave>();
+      all.broadcast<&Leaving::put>();
+    };
+    // Moves may come too late, so the report is not compared.
+    CHECK(tests::run(tess::text("pes=4,cost=100ns,seed=", seed), main).exit_code == 0);
     CHECK(Leaving::n_left == 6);
   }
 }

@@ -1,8 +1,8 @@
 // A PE's knowledge of locations: only newer updates apply, and a message follows newer knowledge at
 // each hop.
-#include "runtime/machine/simulated.hpp"
 #include "runtime/runtime.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/run.hpp"
 
 #include <vector>
 
@@ -11,15 +11,8 @@ namespace {
 int run_on_three(std::function<void()> main) {
   // One process per PE and a slow network: an element needs a millisecond to migrate, a message two
   // microseconds.
-  tess::SimulatedOptions options;
-  options.n_pes = 3;
-  options.pes_per_process = 1;
-  options.latency = std::chrono::microseconds(2);
-  options.bandwidth = 1e9;
-  options.cost = std::chrono::nanoseconds(100);
-  tess::Setup setup;
-  setup.machine = tess::make_simulated_machine(options);
-  return tess::run(setup, std::move(main));
+  return tests::run("pes=3,per-process=1,latency=2us,bandwidth=1GB/s,cost=100ns", std::move(main))
+      .exit_code;
 }
 
 class Heavy : public tess::Chare<Heavy, tess::Index1> {

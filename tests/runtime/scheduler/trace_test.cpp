@@ -1,9 +1,9 @@
 // --trace: the contents of the file for a run with known messages.
 #include "runtime/trace.hpp"
 
-#include "runtime/machine/simulated.hpp"
 #include "runtime/runtime.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/run.hpp"
 
 #include <cstdio>
 #include <filesystem>
@@ -24,14 +24,12 @@ class Relay : public tess::Chare<Relay, tess::Index1> {
 };
 
 int run_relay(const std::string& path, int n_pes) {
-  tess::Setup setup;
-  tess::SimulatedOptions options;
-  options.n_pes = n_pes;
-  options.pes_per_process = n_pes % 2 == 0 ? n_pes / 2 : n_pes;
-  options.cost = tess::Time(100);
-  setup.machine = tess::make_simulated_machine(options);
-  setup.options.trace = path;
-  return tess::run(setup, [] { tess::create<Relay>(tess::range(8))[{0}].send<&Relay::pass>(40); });
+  const int per_process = n_pes % 2 == 0 ? n_pes / 2 : n_pes;
+  tess::RuntimeOptions options;
+  options.trace = path;
+  const auto main = [] { tess::create<Relay>(tess::range(8))[{0}].send<&Relay::pass>(40); };
+  const std::string keys = tess::text("pes=", n_pes, ",per-process=", per_process, ",cost=100ns");
+  return tests::run(keys, main, options).exit_code;
 }
 
 }  // namespace
@@ -81,17 +79,11 @@ namespace {
 
 /// The critical path that a run printed.
 std::string path_of(const std::function<void()>& main, const std::string& file) {
-  tess::Setup setup;
-  tess::SimulatedOptions options;
-  options.n_pes = 3;
-  options.latency = std::chrono::microseconds(10);
-  options.cost = tess::Time(0);
-  setup.machine = tess::make_simulated_machine(options);
-  setup.options.trace = file;
-  std::string all;
-  setup.options.report = [&](const std::string& line) { all += line + "\n"; };
-  REQUIRE(tess::run(setup, main) == 0);
-  return all;
+  tess::RuntimeOptions options;
+  options.trace = file;
+  const auto result = tests::run("pes=3,latency=10us,cost=0ns", main, options);
+  REQUIRE(result.exit_code == 0);
+  return result.report;
 }
 
 /// Element 1 works longer than element 2; element 0 begins when both have told it.

@@ -1,8 +1,7 @@
 // Timers: exactly, in the virtual time of the simulated machine, and on threads.
-#include "runtime/machine/simulated.hpp"
-#include "runtime/machine/threads.hpp"
 #include "runtime/runtime.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/run.hpp"
 
 #include <atomic>
 #include <csignal>
@@ -11,30 +10,13 @@ namespace {
 
 using namespace std::chrono_literals;
 
-struct Ending {
-  int exit_code = 0;
-  std::string report;
-};
-
 template <class Main>
-Ending run_on(std::unique_ptr<tess::Machine> machine, Main main) {
-  Ending ending;
-  tess::Setup setup;
-  setup.machine = std::move(machine);
-  setup.options.report = [&ending](const std::string& line) { ending.report += line + "\n"; };
-  ending.exit_code = tess::run(setup, std::move(main));
-  return ending;
+tests::Ending simulate(Main main, std::int32_t n_pes = 4) {
+  return tests::run(tess::text("pes=", n_pes, ",cost=0ns"), std::move(main));
 }
 template <class Main>
-Ending simulate(Main main, std::int32_t n_pes = 4) {
-  tess::SimulatedOptions options;
-  options.n_pes = n_pes;
-  options.cost = 0ns;
-  return run_on(tess::make_simulated_machine(options), std::move(main));
-}
-template <class Main>
-Ending on_threads(Main main, std::int32_t n_pes = 2) {
-  return run_on(tess::make_threads_machine(n_pes), std::move(main));
+tests::Ending on_threads(Main main, std::int32_t n_pes = 2) {
+  return tests::run_threads(n_pes, std::move(main));
 }
 
 /// The test framework handles signals itself; in this scope the system does.
@@ -86,7 +68,7 @@ class LastTick : public tess::Group<LastTick> {
 
 TEST_CASE("a timer on the simulated machine runs at its virtual time", "[runtime][timers]") {
   std::vector<std::int64_t> times;
-  const Ending ending = simulate([&] {
+  const tests::Ending ending = simulate([&] {
     for (const auto delay : {5ms, 2ms, 0ms, 3ms})
       tess::after(delay, [&] { times.push_back(tess::current_pe().now().count()); });
   });
@@ -96,12 +78,8 @@ TEST_CASE("a timer on the simulated machine runs at its virtual time", "[runtime
 
 TEST_CASE("a timer is exact in any order of messages", "[runtime][timers]") {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-    tess::SimulatedOptions options;
-    options.n_pes = 3;
-    options.cost = 0ns;
-    options.seed = seed;
     std::vector<tess::Time> times;
-    run_on(tess::make_simulated_machine(options), [&times]() -> tess::Task {
+    tests::run(tess::text("pes=3,cost=0ns,seed=", seed), [&times]() -> tess::Task {
       const tess::Time begin = tess::now();
       for (const auto delay : {5ms, 1ms})
         tess::after(delay, [&times, begin] { times.push_back(tess::now() - begin); });
@@ -114,7 +92,7 @@ TEST_CASE("a timer is exact in any order of messages", "[runtime][timers]") {
 
 TEST_CASE("a target gets its value after the delay", "[runtime][timers]") {
   std::int64_t at = 0;
-  const Ending ending = simulate([&]() -> tess::Task {
+  const tests::Ending ending = simulate([&]() -> tess::Task {
     const auto sinks = tess::create<Sink>(tess::range(4));
     tess::Future<std::int64_t> result;
     tess::after(7ms, sinks[{0}].target<&Sink::take>(), result.callback());
@@ -132,7 +110,7 @@ TEST_CASE("an epoch and the run wait for a timer", "[runtime][timers][threads]")
       was_done = in_epoch;
       tess::after(20ms, [&] { in_run = true; });
     };
-    const Ending ending = threads ? on_threads(main) : simulate(main);
+    const tests::Ending ending = threads ? on_threads(main) : simulate(main);
     CHECK(ending.exit_code == 0);
     CHECK(was_done);
     CHECK(in_run);
@@ -142,7 +120,7 @@ TEST_CASE("an epoch and the run wait for a timer", "[runtime][timers][threads]")
 TEST_CASE("a periodic timer ticks at multiples of its period until it is cancelled",
           "[runtime][timers]") {
   std::vector<std::int64_t> times;
-  const Ending ending = simulate([&] {
+  const tests::Ending ending = simulate([&] {
     const auto timer = std::make_shared<tess::Timer>();
     *timer = tess::every(1ms, [&times, timer] {
       times.push_back(tess::current_pe().now().count());
@@ -165,7 +143,7 @@ TEST_CASE("a run ends, or reports its deadlock, beside a periodic timer",
       tess::Future<int> never;
       co_await never;
     };
-    const Ending ending = threads ? on_threads(waits) : simulate(waits);
+    const tests::Ending ending = threads ? on_threads(waits) : simulate(waits);
     CHECK(ending.exit_code == 1);
     CHECK(ending.report.find("the main program on PE 0: ") != std::string::npos);
     CHECK(ending.report.find(" waits for a future of int") != std::string::npos);
@@ -179,7 +157,7 @@ TEST_CASE("the run does not end before what the last call of a periodic timer se
   // Some of the calls come after PE 0 has found that nothing is under way, and before it ends the
   // run.
   for (std::int64_t period_ns = 1000; period_ns < 60'000; period_ns += 100, ++n_runs) {
-    const Ending ending = simulate([&] {
+    const tests::Ending ending = simulate([&] {
       tess::create_group<LastTick>()[tess::PeId{3}].send<&LastTick::begin>(period_ns, 8);
     });
     CHECK(ending.exit_code == 0);
@@ -195,7 +173,7 @@ TEST_CASE("periodic timers go on if the run that seemed to end does not", "[runt
   int n_runs = 0;
   for (std::int64_t period_ns = 1000; period_ns < 10'000; period_ns += 100) {
     LastTick::n_sent = LastTick::n_ticks = LastTick::n_ticks_in_the_middle = 0;
-    const Ending ending = simulate([&] {
+    const tests::Ending ending = simulate([&] {
       const auto member = tess::create_group<LastTick>()[tess::PeId{3}];
       member.send<&LastTick::begin>(period_ns, 40);
       member.send<&LastTick::tick>();
@@ -211,7 +189,7 @@ TEST_CASE("periodic timers go on if the run that seemed to end does not", "[runt
 
 TEST_CASE("an epoch ends although a periodic timer was made in it", "[runtime][timers]") {
   bool ended = false;
-  const Ending ending = simulate([&]() -> tess::Task {
+  const tests::Ending ending = simulate([&]() -> tess::Task {
     co_await tess::epoch([] { (void)tess::every(1us, [] {}); });
     ended = true;
   });
@@ -223,7 +201,7 @@ TEST_CASE("thousands of timers on threads run once each, none too early",
           "[runtime][timers][threads]") {
   std::atomic<int> n_run{0}, n_early{0};
   constexpr int n_timers = 5000;
-  const Ending ending = on_threads([&] {
+  const tests::Ending ending = on_threads([&] {
     tess::Random random(7);
     for (int i = 0; i < n_timers; ++i) {
       const tess::Time delay(static_cast<std::int64_t>(random.below(50'000'000)));
@@ -252,7 +230,7 @@ TEST_CASE("exit ends a run whose timers have not run", "[runtime][timers][thread
 
 TEST_CASE("a signal ends a run with its number and a census", "[runtime][signals][threads]") {
   const DefaultAction action(SIGTERM);
-  const Ending ending = on_threads([]() -> tess::Task {
+  const tests::Ending ending = on_threads([]() -> tess::Task {
     tess::after(5ms, [] { ::raise(SIGTERM); });
     tess::after(std::chrono::hours(1), [] {});  // otherwise it may be reported as a deadlock first
     tess::Future<int> never;
@@ -269,7 +247,7 @@ TEST_CASE("a signal ends a run with its number and a census", "[runtime][signals
 
 TEST_CASE("a signal during a simulated run gets its census", "[runtime][signals]") {
   const DefaultAction action(SIGINT);
-  const Ending ending = simulate([] {
+  const tests::Ending ending = simulate([] {
     (void)tess::every(1ms, [] {});
     const auto again = std::make_shared<std::function<void()>>();
     *again = [weak = std::weak_ptr(again)] { tess::after(1us, *weak.lock()); };

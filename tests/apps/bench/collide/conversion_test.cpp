@@ -2,7 +2,7 @@
 // paper is wrong where the table says so.
 #include "apps/bench/collide/conversion.hpp"
 
-#include "collide/search/grid.hpp"
+#include "collide/search/region_grid.hpp"
 #include "runtime/core/hash.hpp"
 #include "tests/support/catch.hpp"
 
@@ -56,7 +56,7 @@ TEMPLATE_TEST_CASE("a cell of the serial face never decreases with the coordinat
     const Real lo = static_cast<Real>(std::ldexp(random.unit() - 0.5, trial % 40 - 20));
     const Real hi = lo + static_cast<Real>(std::ldexp(random.unit(), trial % 30 - 15));
     const auto n = static_cast<std::int32_t>(1 + random.below(1000));
-    const search::Grid<Real, 3> grid({{lo, lo, lo}, {hi, hi, hi}}, {n, n, n});
+    const search::RegionGrid<Real, 3> grid({{lo, lo, lo}, {hi, hi, hi}}, {n, n, n});
     // About a face of a cell, or of the whole grid.
     Real x = lo + (hi - lo) * static_cast<Real>(random.below(1 + static_cast<std::uint64_t>(n))) /
                       static_cast<Real>(n);
@@ -65,7 +65,7 @@ TEMPLATE_TEST_CASE("a cell of the serial face never decreases with the coordinat
                        -std::numeric_limits<Real>::max());
     for (int step = 0; step < 5; ++step) {
       const Box<Real, 3> point{{x, x, x}, {x, x, x}};
-      const search::CellRange<3> cells = grid.cells(point);
+      const Box<std::int32_t, 3> cells = grid.cells(point);
       for (std::size_t k = 0; k < 3; ++k) {
         REQUIRE(cells.lo[k] == grid.cell(x, k));
         REQUIRE(cells.hi[k] == grid.cell(x, k));

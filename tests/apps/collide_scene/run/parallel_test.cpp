@@ -2,8 +2,8 @@
 #include "apps/collide_scene/run/parallel.hpp"
 
 #include "apps/collide_scene/run/serial.hpp"
-#include "runtime/machine/simulated.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/run.hpp"
 
 using namespace collide_scene;
 using tess::collide::WithinModel;
@@ -25,8 +25,7 @@ tess::Task collide(const Scene& scene, const Rules& rules, OnChares& out) {
 
 OnChares collide_on_chares(const Scene& scene, const Rules& rules, const char* machine) {
   OnChares out;
-  tess::Setup setup{tess::make_simulated_machine(tess::parse_simulated(machine)), {}};
-  REQUIRE(tess::run(setup, [&]() -> tess::Task { return collide(scene, rules, out); }) == 0);
+  REQUIRE(tests::run(machine, [&] { return collide(scene, rules, out); }).exit_code == 0);
   std::ranges::sort(out.pairs);
   return out;
 }
