@@ -62,8 +62,9 @@ class Driver {
     return line_.option(name, value, meaning);
   }
   tess::Option flag(const std::string& name, bool& value, const std::string& meaning);
-  /// The program is in this mode if the option is given.
-  void enters(const std::string& option, Modes mode);
+  /// The program is in this mode if the option is given, or given with this value. Of several modes
+  /// of one option that fit, the last counts.
+  void enters(const std::string& option, Modes mode, const std::string& value = "");
 
   // Options that all programs share. Each says what it means in this one.
   void study(const std::string& meaning);
@@ -111,7 +112,7 @@ class Driver {
     Modes modes;
   };
   struct Entry {
-    std::string option;
+    std::string option, value;  // of any value if it is empty
     Modes mode;
   };
 
