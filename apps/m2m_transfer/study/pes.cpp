@@ -99,7 +99,7 @@ Picture picture_of(const std::vector<PesRow>& rows, const std::string& title) {
     kit::add_point(chart, "together, ideal", row.pes, ideal.together() * ideal.pes / row.pes);
   }
   chart.series.back().style = kit::Style::dashes;
-  return {"pes", std::move(chart)};
+  return {"pes_time", std::move(chart)};
 }
 
 std::vector<SimulatedOptions> machines_of(std::vector<std::int32_t> pes, const std::string& keys) {

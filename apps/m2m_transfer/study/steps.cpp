@@ -80,7 +80,7 @@ Picture picture_of(const std::vector<StepsRow>& rows) {
     kit::add_point(chart, name + ", again", row.steps, row.again);
     chart.series.back().style = kit::Style::dashes;
   }
-  return {"steps", std::move(chart)};
+  return {"steps_time", std::move(chart)};
 }
 
 }  // namespace m2m_transfer

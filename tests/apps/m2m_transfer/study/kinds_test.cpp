@@ -4,6 +4,7 @@
 #include "m2m/kuhn.hpp"
 #include "tests/apps/m2m_transfer/program.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 using namespace tess;
@@ -125,6 +126,8 @@ TEST_CASE("a study of steps has the same bits with donors that are kept", "[apps
       results_of(threads(2), {"kuhn:5", "kuhn:6@0.2", "--study", "steps", "--plot",
                               scratch.path("study"), "--repeat", "1"});
   REQUIRE(rows.size() == 14);  // there and back
+  const std::string csv = slurp(scratch.path("study/steps.csv"));
+  CHECK(std::count(csv.begin(), csv.end(), '\n') == 1 + 14);
   for (const auto& row : rows) {
     CHECK(row["same_bits"].get<bool>());
     CHECK(row["seconds_per_step_kept"].get<double>() > 0);
