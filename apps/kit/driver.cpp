@@ -34,6 +34,11 @@ tess::Option Driver::flag(const std::string& name, bool& value, const std::strin
   return line_.flag(name, value, meaning);
 }
 
+void Driver::folder(const std::string& name, std::string& path, const std::string& meaning) {
+  option(name, path, meaning);
+  folders_.push_back(known_.back().name);
+}
+
 void Driver::enters(const std::string& option, Modes mode, const std::string& value) {
   entries_.push_back({option, value, mode});
 }
@@ -86,6 +91,7 @@ bool Driver::parse(int argc, char** argv, const std::string& footer) {
     reason = value.empty() ? option : option + ' ' + value;
   }
   refuse_others(reason);
+  for (const std::string& name : folders_) make_folder(name, line_.value(name));
   require_writable("--json", json_);
   require_picture("--plot", picture_);
   files_.writes("--trace", trace_);

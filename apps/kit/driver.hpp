@@ -62,6 +62,8 @@ class Driver {
     return line_.option(name, value, meaning);
   }
   tess::Option flag(const std::string& name, bool& value, const std::string& meaning);
+  /// The option names a folder to write to, which parse() makes, so that other files may go there.
+  void folder(const std::string& name, std::string& path, const std::string& meaning);
   /// The program is in this mode if the option is given, or given with this value. Of several modes
   /// of one option that fit, the last counts.
   void enters(const std::string& option, Modes mode, const std::string& value = "");
@@ -127,6 +129,7 @@ class Driver {
   Modes modes_ = Mode::all, mode_ = Mode::run;
   std::vector<Known> known_;
   std::vector<Entry> entries_;
+  std::vector<std::string> folders_;  // options
   FileNames files_;
   std::optional<Progress> progress_;
 };

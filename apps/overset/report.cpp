@@ -1,12 +1,9 @@
 #include "apps/overset/report.hpp"
 
-#include "apps/kit/chart.hpp"
-#include "apps/kit/json.hpp"
 #include "apps/kit/write_file.hpp"
 #include "apps/overset/picture.hpp"
 #include "m2m/write_exodus.hpp"
 
-#include <cmath>
 #include <fmt/format.h>
 
 namespace overset {
@@ -16,6 +13,50 @@ using tess::m2m::BlankingReport;
 using tess::m2m::Orphan;
 
 constexpr std::array names{"background", "overset"};
+
+struct MeshRow {
+  const char* name;
+  const Assembled& mesh;
+};
+using R = const MeshRow&;
+using kit::Json;
+
+template <auto member>
+Json reported(R row) {
+  return row.mesh.report.*member;
+}
+Json orphan_list(R row) {
+  Json out = Json::array();
+  for (const Orphan& orphan : row.mesh.report.orphans)
+    out.push_back({{"point", orphan.point}, {"at", orphan.at}, {"reason", name_of(orphan.reason)}});
+  return out;
+}
+
+constexpr kit::Column<MeshRow> mesh_columns[] = {
+    {"name", "", "<10", kit::of<&MeshRow::name>},
+    {"field", "field", "8", reported<&BlankingReport::n_field>},
+    {"hole", "hole", "8", reported<&BlankingReport::n_hole>},
+    {"fringe", "fringe", "8", reported<&BlankingReport::n_fringe>},
+    {"orphans", "orphans", "8", reported<&BlankingReport::n_orphans>},
+    {"least_quality", "least quality", "14.3f", reported<&BlankingReport::least_quality>},
+    {"full_quality", "full quality", "13", reported<&BlankingReport::n_full>},
+    {"linf", "max error", "10.3e", [](R r) -> Json { return r.mesh.linf; }},
+    {"rms", "", nullptr, [](R r) -> Json { return r.mesh.rms; }},
+    {"orphan_list", "", nullptr, orphan_list}};
+
+std::vector<MeshRow> rows_of(const Assembly& assembly) {
+  return {{names[0], assembly.meshes[0]}, {names[1], assembly.meshes[1]}};
+}
+
+constexpr kit::Column<StudyRow> study_columns[] = {
+    {"n", "n", "6", kit::of<&StudyRow::n>},
+    {"h", "h", "9.5f", kit::of<&StudyRow::h>},
+    {"seconds", "seconds", "10.4f", kit::of<&StudyRow::seconds>},
+    {"fringe", "fringe", "8", kit::of<&StudyRow::n_fringe>},
+    {"orphans", "orphans", "8", kit::of<&StudyRow::n_orphans>},
+    {"rms", "rms", "11.3e", kit::of<&StudyRow::rms>},
+    {"linf", "max error", "11.3e", kit::of<&StudyRow::linf>},
+    {"order", "order", "7.2f", kit::of<&StudyRow::order>}};
 
 }  // namespace
 
@@ -28,15 +69,7 @@ std::string table(const Request& request, const Problem& problem, const Assembly
   for (std::size_t i = 0; i < 2; ++i)
     if (const std::string skipped = skipped_text(problem.meshes[i]); !skipped.empty())
       out += fmt::format("\n  skipped in {}: {}", names[i], skipped);
-  out += fmt::format("\n  {:<11}{:>9}{:>9}{:>9}{:>9}{:>15}{:>14}{:>11}\n", "", "field", "hole",
-                     "fringe", "orphans", "least quality", "full quality", "max error");
-  for (std::size_t i = 0; i < 2; ++i) {
-    const Assembled& mesh = assembly.meshes[i];
-    const BlankingReport& r = mesh.report;
-    out +=
-        fmt::format("  {:<11}{:>9}{:>9}{:>9}{:>9}{:>15.3f}{:>14}{:>11.3e}\n", names[i], r.n_field,
-                    r.n_hole, r.n_fringe, r.n_orphans, r.least_quality, r.n_full, mesh.linf);
-  }
+  out += '\n' + kit::Rows(mesh_columns).table(rows_of(assembly));
   out += fmt::format("  seconds: cut {:.4f}, search {:.4f}, exchange {:.4f}; hash {:016x}\n",
                      assembly.cut, assembly.search, assembly.exchange, assembly.hash);
   for (std::size_t i = 0; i < 2; ++i) {
@@ -54,34 +87,16 @@ std::string table(const Request& request, const Problem& problem, const Assembly
   return out;
 }
 
-std::string json(const Request& request, const Problem& problem, const Assembly& assembly) {
-  kit::Json out{
-      {"background", request.background},
-      {"overset", request.overset},
-      {"wall",
-       {{"triangles", problem.wall.n_triangles()},
-        {"holes_capped", problem.wall.rim().n_loops},
-        {"cap_share", problem.wall.rim().cap_share}}},
-      {"field", problem.field},
-      {"layers", problem.options.fringe_layers},
-      {"chares", problem.n_parts},
-      {"seconds",
-       {{"cut", assembly.cut}, {"search", assembly.search}, {"exchange", assembly.exchange}}},
-      {"result_hash", fmt::format("{:016x}", assembly.hash)}};
-  for (std::size_t i = 0; i < 2; ++i) {
-    const Assembled& mesh = assembly.meshes[i];
-    const BlankingReport& r = mesh.report;
-    kit::Json of_mesh{{"name", names[i]},         {"field", r.n_field},
-                      {"hole", r.n_hole},         {"fringe", r.n_fringe},
-                      {"orphans", r.n_orphans},   {"least_quality", r.least_quality},
-                      {"full_quality", r.n_full}, {"linf", mesh.linf},
-                      {"rms", mesh.rms},          {"orphan_list", kit::Json::array()}};
-    for (const Orphan& orphan : r.orphans)
-      of_mesh["orphan_list"].push_back(
-          {{"point", orphan.point}, {"at", orphan.at}, {"reason", name_of(orphan.reason)}});
-    out["meshes"].push_back(std::move(of_mesh));
-  }
-  return kit::json_text(out);
+Json report(const Problem& problem, const Assembly& assembly) {
+  return {{"wall",
+           {{"triangles", problem.wall.n_triangles()},
+            {"holes_capped", problem.wall.rim().n_loops},
+            {"cap_share", problem.wall.rim().cap_share}}},
+          {"chares", problem.n_parts},
+          {"seconds",
+           {{"cut", assembly.cut}, {"search", assembly.search}, {"exchange", assembly.exchange}}},
+          {"result_hash", kit::hex(assembly.hash)},
+          {"meshes", kit::Rows(mesh_columns).json(rows_of(assembly))}};
 }
 
 std::string explanation(const Problem& problem) {
@@ -101,8 +116,7 @@ std::string explanation(const Problem& problem) {
       problem.field);
 }
 
-std::string write(const Problem& problem, const Assembly& assembly, const std::string& folder) {
-  kit::make_folder("--plot", folder);
+void write(const Problem& problem, const Assembly& assembly, const std::string& folder) {
   for (std::size_t i = 0; i < 2; ++i) {
     const Assembled& mesh = assembly.meshes[i];
     const std::array<tess::m2m::Field, 3> fields{
@@ -113,33 +127,25 @@ std::string write(const Problem& problem, const Assembly& assembly, const std::s
   }
   kit::write_file(folder + "/before.svg", picture(problem, assembly, Moment::before));
   kit::write_file(folder + "/after.svg", picture(problem, assembly, Moment::after));
-  return fmt::format("wrote before.svg, after.svg, background.exo and overset.exo to {}\n", folder);
 }
 
-std::string study_table(const std::vector<StudyRow>& rows, const std::string& folder) {
-  std::string out = fmt::format("{:>6}{:>10}{:>11}{:>9}{:>9}{:>12}{:>12}{:>8}\n", "n", "h",
-                                "seconds", "fringe", "orphans", "rms", "max error", "order");
+const kit::Rows<StudyRow>& study_report() {
+  static const kit::Rows<StudyRow> rows(study_columns);
+  return rows;
+}
+
+kit::Chart chart_of(const std::vector<StudyRow>& rows) {
   kit::Chart chart{.title = "error at the fringe",
                    .x_label = "seconds: cut, search, exchange",
                    .y_label = "error",
                    .x_log = true,
-                   .y_log = true};
-  chart.series = {{"rms"}, {"max"}};
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    const StudyRow& r = rows[i];
-    const std::string order = i == 0 ? ""
-                                     : fmt::format("{:.2f}", std::log(rows[i - 1].rms / r.rms) /
-                                                                 std::log(rows[i - 1].h / r.h));
-    out += fmt::format("{:>6}{:>10.5f}{:>11.4f}{:>9}{:>9}{:>12.3e}{:>12.3e}{:>8}\n", r.n, r.h,
-                       r.seconds, r.n_fringe, r.n_orphans, r.rms, r.linf, order);
-    chart.series[0].points.push_back({r.seconds, r.rms});
-    chart.series[1].points.push_back({r.seconds, r.linf});
+                   .y_log = true,
+                   .series = {{"rms"}, {"max"}}};
+  for (const StudyRow& row : rows) {
+    chart.series[0].points.push_back({row.seconds, row.rms});
+    chart.series[1].points.push_back({row.seconds, row.linf});
   }
-  if (folder.empty()) return out;
-  kit::make_folder("--plot", folder);
-  if (kit::write_svg(folder + "/study.svg", chart))
-    out += fmt::format("wrote study.svg and study.csv to {}\n", folder);
-  return out;
+  return chart;
 }
 
 }  // namespace overset

@@ -1,8 +1,10 @@
 // What the program prints and writes.
 #pragma once
 
+#include "apps/kit/rows.hpp"
 #include "apps/overset/assembly.hpp"
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,16 +13,14 @@ namespace overset {
 /// A table; the first orphans are listed.
 [[nodiscard]] std::string table(const Request& request, const Problem& problem,
                                 const Assembly& assembly);
-/// The same, and all listed orphans, as JSON.
-[[nodiscard]] std::string json(const Request& request, const Problem& problem,
-                               const Assembly& assembly);
+/// The same, and all listed orphans, as an object of `results`.
+[[nodiscard]] kit::Json report(const Problem& problem, const Assembly& assembly);
 /// The method in sentences, with the numbers of this run.
 [[nodiscard]] std::string explanation(const Problem& problem);
 
 /// Writes background.exo and overset.exo with the nodal variables iblank, quality and the field,
-/// and before.svg and after.svg, into the folder. Returns a line that lists them.
-[[nodiscard]] std::string write(const Problem& problem, const Assembly& assembly,
-                                const std::string& folder);
+/// and before.svg and after.svg, into the folder.
+void write(const Problem& problem, const Assembly& assembly, const std::string& folder);
 
 /// One row of a study: both meshes of the size `n`.
 struct StudyRow {
@@ -29,8 +29,10 @@ struct StudyRow {
   double seconds = 0;  ///< cut, search and exchange
   double linf = 0, rms = 0;
   std::uint64_t n_fringe = 0, n_orphans = 0;
+  std::optional<double> order{};  ///< the power of h with which rms fell since the row before
 };
-/// Error against run time with the fitted order in h. With a folder also study.svg (and study.csv).
-[[nodiscard]] std::string study_table(const std::vector<StudyRow>& rows, const std::string& folder);
+[[nodiscard]] const kit::Rows<StudyRow>& study_report();
+/// Error against run time.
+[[nodiscard]] kit::Chart chart_of(const std::vector<StudyRow>& rows);
 
 }  // namespace overset

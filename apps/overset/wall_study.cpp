@@ -42,12 +42,17 @@ double seconds_since(std::clock_t start) {
   return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
 }
 
+constexpr kit::Column<WallRow> columns[] = {
+    {"triangles", "triangles", "10", kit::of<&WallRow::n_triangles>},
+    {"build_seconds", "build, s", "10.4f", kit::of<&WallRow::build>},
+    {"ns_per_point", "ns per point", "14.0f", kit::of<&WallRow::ns>},
+    {"inside", "inside", "9", kit::of<&WallRow::n_inside>}};
+
 }  // namespace
 
-std::string wall_study(const std::string& shape) {
+std::vector<WallRow> wall_study(const std::string& shape) {
   constexpr std::size_t n_points = 1'000'000, n_checked = 200;
-  std::string out =
-      fmt::format("{:>10}{:>11}{:>15}{:>10}\n", "triangles", "build, s", "ns per point", "inside");
+  std::vector<WallRow> rows;
   for (const std::int32_t n : {4, 12, 30, 92}) {
     Body body = parse_body(fmt::format("{}:{}", shape, n));
     body.n_layers = 1;
@@ -72,10 +77,14 @@ std::string wall_study(const std::string& shape) {
       TESS_CHECK(std::abs(angles - wall.winding_number(points[i])) < 1e-6, "the winding number is ",
                  wall.winding_number(points[i]), ", but the solid angles give ", angles);
     }
-    out += fmt::format("{:>10}{:>11.4f}{:>15.0f}{:>10}\n", wall.n_triangles(), build,
-                       1e9 * seconds / n_points, n_inside);
+    rows.push_back({wall.n_triangles(), build, 1e9 * seconds / n_points, n_inside});
   }
-  return out;
+  return rows;
+}
+
+const kit::Rows<WallRow>& wall_report() {
+  static const kit::Rows<WallRow> report(columns);
+  return report;
 }
 
 }  // namespace overset

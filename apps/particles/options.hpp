@@ -21,10 +21,9 @@ struct RunOptions {
 
 struct Options {
   std::string scene;
-  std::int32_t steps = -1;  ///< instead of the scene's; -1: the scene's
-  std::string json, out;
-  bool explain = false;
-  bool study = false;
+  std::optional<std::int32_t> steps;  ///< instead of the scene's
+  std::string out;
+  bool study = false;            ///< instead of a run
   std::vector<int> resolutions;  ///< of the study; empty: the usual ones
   bool compressed = false;       ///< also where the scene does not ask for it
   RunOptions run{};

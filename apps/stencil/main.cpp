@@ -5,11 +5,10 @@
 // them; with --restart it continues from there. With --repeat it runs again from zero, as often as
 // asked for, and the time is the median.
 #include "apps/kit/checkpoints.hpp"
-#include "apps/kit/file_names.hpp"
+#include "apps/kit/driver.hpp"
 #include "apps/kit/median.hpp"
-#include "apps/kit/write_file.hpp"
+#include "apps/kit/rows.hpp"
 #include "apps/stencil/grid.hpp"
-#include "runtime/command_line.hpp"
 #include "runtime/monitor.hpp"
 #include "runtime/runtime.hpp"
 
@@ -104,7 +103,6 @@ struct State {
 struct Options {
   Grid grid{{64}, 4, 10'000};
   std::optional<std::int32_t> repeat;  ///< runs that count, after one that warms up
-  std::string json;
   kit::Checkpoints checkpoints;
 };
 
@@ -125,7 +123,8 @@ tess::TaskOf<double> run(State& state, kit::Checkpoints& checkpoints) {
   co_return tess::seconds(tess::now() - begin);
 }
 
-tess::Task relax(Options options) {
+tess::Task relax(Options options, kit::Driver& driver) {
+  driver.progress().phase("steps");
   State state;
   if (options.checkpoints.restarts()) {
     co_await options.checkpoints.restart(state, options.grid.n_steps);
@@ -147,6 +146,7 @@ tess::Task relax(Options options) {
   }
   if (!times.empty()) seconds = kit::median(times);
   const Outcome outcome = co_await state.blocks.reduce<&Block::compare>();
+  driver.progress().clear();
   const auto per_step = [&](double time) {
     return time * 1e6 / std::max(1, grid.n_steps - first) / grid.n_blocks / grid.n_blocks;
   };
@@ -163,13 +163,11 @@ tess::Task relax(Options options) {
         "the time is the median of {} runs, after one that warms up; {:.3f} to {:.3f} us\n",
         times.size(), per_step(*least), per_step(*greatest)));
   }
-  if (!options.json.empty())
-    kit::write_file(
-        options.json,
-        fmt::format("{{\"program\": \"stencil\", \"size\": {}, \"blocks\": {}, \"steps\": {}, "
-                    "\"from_iterate\": {:.3e}, \"result_hash\": \"{:016x}\"}}\n",
-                    grid.problem.size, grid.n_blocks, grid.n_steps, outcome.from_iterate,
-                    outcome.hash));
+  driver.write(std::array{kit::Json{{"size", grid.problem.size},
+                                    {"blocks", grid.n_blocks},
+                                    {"steps", grid.n_steps},
+                                    {"from_iterate", kit::rounded(outcome.from_iterate)},
+                                    {"result_hash", kit::hex(outcome.hash)}}});
 }
 
 }  // namespace
@@ -179,31 +177,29 @@ int main(int argc, char** argv) {
   return tess::guarded(argc, argv, [&](tess::Setup& setup) {
     stencil::Options options;
     stencil::Grid& grid = options.grid;
-    tess::CommandLine line("A two-dimensional Jacobi stencil on chares.");
-    line.option("--blocks", grid.n_blocks, "blocks on each axis").between(1, 4096);
-    line.option("--size", grid.problem.size, "grid points on each axis").between(1, 65536);
-    line.option("--steps", grid.n_steps, "Jacobi steps").between(1, 1'000'000'000);
-    line.flag("--log-steps", grid.logs_steps,
-              "print the time of day and the processor time of a process at each step");
-    line.option("--repeat", options.repeat,
+    kit::Driver driver(setup, "A two-dimensional Jacobi stencil on chares.");
+    driver.option("--blocks", grid.n_blocks, "blocks on each axis").between(1, 4096);
+    driver.option("--size", grid.problem.size, "grid points on each axis").between(1, 65536);
+    driver.option("--steps", grid.n_steps, "Jacobi steps").between(1, 1'000'000'000);
+    driver.flag("--log-steps", grid.logs_steps,
+                "print the time of day and the processor time of a process at each step");
+    driver
+        .option("--repeat", options.repeat,
                 "runs that count, after one that warms up; the time is their median (default: one "
                 "run, without a warm-up)")
         .between(1, 1000);
-    line.option("--json FILE", options.json, "write the result as JSON");
-    options.checkpoints.add_options(line);
-    if (!line.parse(argc, argv)) return 0;
-    if (options.repeat)  // each run starts from zero, and the steps of all would be in one log
-      line.refuse_beside("--repeat", {"--checkpoint", "--restart", "--log-steps"});
-    options.checkpoints.check(line, {"--blocks", "--size", "--log-steps"});
-    kit::require_writable("--json", options.json);
-    kit::FileNames names;
-    names.writes("--trace", setup.options.trace);
-    names.writes("--json", options.json);
+    driver.json();
+    options.checkpoints.add_options(driver);
+    if (!driver.parse(argc, argv)) return 0;
+    // Each repeated run starts from zero, and the steps of all would be in one log.
+    for (const char* option : {"--checkpoint", "--restart", "--log-steps"})
+      driver.refuse_both(option, "--repeat");
+    options.checkpoints.check(driver.line(), {"--blocks", "--size", "--log-steps"});
     // A restart takes what is not given from the checkpoint.
     if (!options.checkpoints.restarts() && grid.n_blocks > grid.problem.size)
       tess::fail(tess::ErrorCode::bad_argument, "--blocks: ", grid.n_blocks,
                  " blocks on an axis of ", grid.problem.size,
                  " points: give at most one per point");
-    return tess::run(setup, [&] { return stencil::relax(options); });
+    return tess::run(setup, [&] { return stencil::relax(options, driver); });
   });
 }

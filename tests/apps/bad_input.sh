@@ -153,9 +153,8 @@ refuses "BACKGROUND kuhn:16 is no ladder" "${overset[@]}" kuhn:16 --study h
 refuses "BACKGROUND kuhn:16,8 is no ladder" "${overset[@]}" kuhn:16,8 ball --study h
 refuses "BACKGROUND kuhn:8,15 is no ladder" "${overset[@]}" kuhn:8,15 ball --study h
 refuses "BACKGROUND kuhn:8,16 does not work with --study wall" "$bin/overset" kuhn:8,16 ball --study wall
-refuses "--field does not work with --study wall" "$bin/overset" --field sin --study wall
-
-refuses "--json .* does not work with --study h" "${overset[@]}" --study h
+refuses "--field sin does not work with --study wall" "$bin/overset" --field sin --study wall
+refuses "--wall body does not work with --study h" "${overset[@]}" --study h --wall body
 refuses "--plot .* does not work with --study wall" "$bin/overset" --study wall --plot "$scratch"
 mkdir "$scratch/meshes" && "$bin/m2m_transfer" kuhn:2 kuhn:4 --out "$scratch/meshes/background.exo" >"$scratch/out"
 refuses "--plot .* would overwrite" "$bin/overset" "$scratch/meshes/background.exo" ball:2 --plot "$scratch/meshes"
@@ -190,20 +189,19 @@ refuses "--by: needs a --heat map" "$bin/tess_monitor" --by pe
 refuses "--level '': give single or funneled" "$bin/embedded" --level
 refuses "--level 'double'" "$bin/embedded" --pes 1 --level double
 
-crowd=("$bin/collide_scaling" --study strong --pes 1 --triangles 2048)
+crowd=("$bin/collide_scene" crowd:2048 --study pes --machines 1)
 refuses "no balance strategy 'gredy'" "${crowd[@]}" --balance gredy
-refuses "--steps 5: greedy_refine balances after every 5 steps" "${crowd[@]}" --steps 5
-refuses "--costs pair=3ns does not work with --work measured" "${crowd[@]}" --work measured --costs pair=3ns
-refuses "--pes: Value 0 not in range" "$bin/collide_scaling" --pes 1,0
-refuses "--triangles: Value 0 not in range" "$bin/collide_scaling" --pes 1 --triangles 0
-refuses "--per-process 2: the 3 PEs of --pes do not divide into processes of so many; give .* multiples of 2" "$bin/collide_scaling" --pes 4,3 --per-process 2
-refuses "--thinned: 3 not in {1,4,16}" "${crowd[@]}" --thinned 3
-refuses "--message-ns: Value -1 not in range" "${crowd[@]}" --message-ns=-1
-refuses "--latency-ns: Value -1 not in range" "${crowd[@]}" --latency-ns=-1
-refuses "--out $scratch/missing/x.svg: cannot be written" "${crowd[@]}" --out "$scratch/missing/x"
-
-refuses "^collide_scene: error: --json: needs an INPUT" "$bin/collide_scene" --stability --json "$scratch/never.json"
-refuses "^particles: error: --steps: needs a SCENE" "$bin/particles" --stability --steps 5
+refuses "--steps 5: greedy_refine balances after every 5 steps" "${crowd[@]}" --steps 5 --balance greedy_refine
+refuses "--machines: Value 0 not in range" "$bin/collide_scene" crowd:2048 --study pes --machines 1,0
+refuses "3 PEs do not divide into processes of 2" "$bin/collide_scene" crowd:2048 --study pes --machines 4,3 --network per-process=2
+refuses "--network pes=3 names a number of PEs" "${crowd[@]}" --network pes=3
+refuses "--weak: .*box.msh is no scene made by rule" "$bin/collide_scene" "$scratch/box.msh" --study pes --weak
+refuses "--machines: needs --study" "$bin/collide_scene" crowd:2048 --machines 1
+refuses "--balance none does not work with --study voxels" "$bin/collide_scene" crowd:2048 --study voxels --balance none
+refuses "--triangles does not work with --study" "${crowd[@]}" --triangles
+refuses "--stability: needs no PEs" "$bin/collide_scene" --stability --pes 2
+refuses "^collide_scene: error: INPUT crowd:2048 does not work with --stability" "$bin/collide_scene" --stability crowd:2048
+refuses "^particles: error: --steps 5 does not work with --stability" "$bin/particles" --stability --steps 5
 refuses "^collide_scene: error: voxel grid: coordinate" "$bin/collide_scene" boxes:100 --pes 2 --voxel-size 1e-30
 
 scaling=("$bin/m2m_transfer" --study pes --repeat 1 --pes-of-study)

@@ -35,7 +35,7 @@ want=$(hash_of "$scratch/first.json")
 echo "one PE: $want"
 
 for key in scene particles steps pes ns_per_particle_step field method cells build_seconds bytes bytes_compressed \
-  nonfinite tunnelled energy_start energy_end result_hash study; do
+  nonfinite tunnelled energy_start energy_end measures result_hash; do
   grep -q "\"$key\":" "$scratch/first.json"
   check "the result has the key $key" $?
 done
@@ -68,7 +68,7 @@ balanced() {  # balanced STRATEGY COMMAND…
   local strategy=$1
   shift
   same "$@" "$scratch/cut.json" --balance "$strategy"
-  [[ $(grep -A6 '"balance":' "$scratch/again.json" | tr -d ' \n') =~ \"rounds\":[1-9][0-9]*,\"moves\":[1-9] ]]
+  [[ $(grep -A1 '"rounds":' "$scratch/again.json" | tr -d ' \n') =~ \"rounds\":[1-9][0-9]*,\"moves\":[1-9] ]]
   check "the balancer of $* moves blocks" $?
 }
 balanced rotate "$particles" --pes 2
@@ -76,7 +76,7 @@ balanced greedy "$particles" --pes 4
 balanced rotate "${mpirun[@]}" -n 2 "$particles" --pes 1
 balanced rotate,when=periodic,period=1ms "${mpirun[@]}" -n 2 "$particles" --pes 2
 balanced random "$particles" --sim pes=8,seed=3,migrate=0.1
-grep -q 'balance":' "$scratch/first.json"
+grep -q '"rounds":' "$scratch/first.json"
 check "no balancer, no rounds" $((! $?))
 
 # Compressed fields: another answer, the same for all PEs and processes.
@@ -186,10 +186,14 @@ mkdir -p "$scratch/late/trajectories/step_000000020.vtp"
 unwritable '--out .*late/trajectories/step_000000020.vtp: cannot be written: is a directory; give' \
   "$particles" "$scratch/scene.json" --pes 1 --out "$scratch/late"
 unwritable '--json' "${mpirun[@]}" --quiet -n 2 "$particles" "$scratch/scene.json" --pes 1 --json /nonexistent/x.json
-unwritable '--resolutions 16,32: is for a study; add --study' "$particles" "$scratch/scene.json" --resolutions 16,32
+unwritable '--resolutions: needs --study; give one, or leave it out' "$particles" "$scratch/scene.json" --resolutions 16,32
 "$particles" "$scratch/scene.json" --pes 1 --steps 0 --json "$scratch/new/r.json" --out "$scratch/new" >"$scratch/out.txt" 2>&1 &&
   [[ -s $scratch/new/r.json ]]
 check "--json into the folder that --out makes" $?
+"$particles" "$scratch/scene.json" --study --resolutions 16 --json "$scratch/study.json" --out "$scratch/study" >"$scratch/out.txt" 2>&1 &&
+  [[ $(grep -c '"of_tree":' "$scratch/study.json") == "$(grep -cE '^(field|rule|cost) ' "$scratch/out.txt")" && -s $scratch/study/study_step.csv ]]
+check "the study has a result per line of its table, and pictures" $?
+unwritable '--steps 5 does not work with --study' "$particles" "$scratch/scene.json" --study --steps 5
 
 # Names are bytes: one that is not UTF-8 is written with what it has of that, one with a newline is shown in one line.
 odd=$scratch/b$'\xff'd.json

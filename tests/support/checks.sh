@@ -5,6 +5,7 @@
 #     fail WORDS…   counts a check that failed, and prints what failed
 #     says PATTERN  checks that a line of $scratch/out, the output of the last command, matches
 #     exits …       runs a command and checks its exit code and what it says; see below
+#     same_results  succeeds if two JSON files of a program have the same results, on any machines and with any options
 #     finish        prints the counts; succeeds if checks have passed and none has failed
 set -uo pipefail
 scratch=$(mktemp -d)
@@ -42,6 +43,9 @@ exits() {
     fail "(exit $code, wanted $want_code and \"$want\"): $*"
     tail -n 3 "$scratch/out" "$scratch/err"
   fi
+}
+same_results() {
+  [[ -s $1 && -s $2 ]] && cmp -s <(sed -n '/"results":/,$p' "$1") <(sed -n '/"results":/,$p' "$2")
 }
 finish() {
   echo "$passed passed, $failed failed"

@@ -20,7 +20,7 @@ std::string uses(const Scene& scene, bool rules) {
 
 }  // namespace
 
-std::string explanation(const Scene& scene, const Options& options) {
+std::string explanation(const Scene& scene, const RunOptions& options) {
   std::string out = "this scene, rule by rule\n";
   const auto line = [&out](const std::string& text) { out += "  " + text + "\n"; };
   const auto count = [&scene](const auto& is_counted) {
@@ -41,7 +41,6 @@ std::string explanation(const Scene& scene, const Options& options) {
   } else if (any) {
     line("fields: left out, no rule asks for a surface and no picture shows one");
   }
-  if (options.study) line("study: builds fields of its own, of the first object");
   line(fmt::format("objects: {}, of which {} move", scene.objects.size(),
                    count([](const SceneObject& object) { return object.frame.is_moving(); })));
   line(fmt::format("step loops: {}, one for each mass", masses_of(scene).size()));
@@ -49,7 +48,7 @@ std::string explanation(const Scene& scene, const Options& options) {
       fmt::format("audit of each step for particles that tunnel: of {} of {} particles "
                   "(outputs.audit); their steps take 4 to 10 times as long",
                   n_audited(scene), scene.n_particles()));
-  const auto& balance = options.run.balance;
+  const auto& balance = options.balance;
   line(balance ? fmt::format("balancer: used, {}, {}", balance->strategy, name_of(balance->when))
                : "balancer: left out, blocks stay and no load is measured");
   if (scene.outputs.trajectories == 0) line("trajectories: left out");

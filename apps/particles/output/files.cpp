@@ -1,6 +1,5 @@
 #include "apps/particles/output/files.hpp"
 
-#include "apps/kit/file_names.hpp"
 #include "apps/kit/write_file.hpp"
 #include "apps/particles/output/picture.hpp"
 #include "apps/particles/study/study.hpp"
@@ -37,41 +36,19 @@ bool writes_snapshot(const Scene& scene, const std::string& file) {
   return file == snapshot_file(step) && traces(scene, step);
 }
 
-/// Throws Error if a file that is written would replace one that is read or written.
-void refuse_to_overwrite(const Scene& scene, const Options& options, const std::string& trace) {
-  kit::FileNames names;
-  std::vector<fs::path> others{options.scene, options.json, trace};
-  names.reads("SCENE", options.scene);
-  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
-    const SceneObject& object = scene.objects[i];
-    for (const std::string& read : {object.field, object.file}) others.emplace_back(read);
-    names.reads(fmt::format("objects[{}].field", i), object.field);
-    names.reads(fmt::format("objects[{}].shape.file", i), object.file);
-  }
-  names.writes("--json", options.json);
-  names.writes("--trace", trace);
-  if (options.out.empty()) return;
-  const std::string what = "--out " + options.out + ":";
+/// What is written to the folder of --out, without the snapshots, which are too many for a list.
+std::vector<std::string> files_of(const Scene& scene, const Options& options) {
+  std::vector<std::string> files;
+  if (options.study)
+    for (const std::string& picture : study_pictures())
+      files.insert(files.end(), {picture, kit::data_path(picture)});
+  if (options.study) return files;
   const Outputs& outputs = scene.outputs;
-  const fs::path in(options.out);
-  // Names in the folder differ from each other: each is compared with those outside only.
-  const auto check = [&](const fs::path& file) {
-    kit::FileNames(names).writes(what, (in / file).string());
-  };
-  for (std::size_t i = 0; outputs.fields && i < scene.objects.size(); ++i) check(field_file(i));
-  if (outputs.slice) check("field.svg");
-  if (outputs.trajectories > 0) {
-    check("paths.svg");
-    check("trajectories.pvd");
-    // The snapshots are too many to compare each.
-    for (const fs::path& other : others) {
-      const std::string name = other.filename().string();
-      if (is_named_as_snapshot(name)) check(fs::path("trajectories") / name);
-    }
-  }
-  if (!options.study) return;
-  for (const std::string& picture : study_pictures())
-    for (const std::string& file : {picture, kit::data_path(picture)}) check(file);
+  for (std::size_t i = 0; outputs.fields && i < scene.objects.size(); ++i)
+    files.push_back(field_file(i));
+  if (outputs.slice) files.emplace_back("field.svg");
+  if (outputs.trajectories > 0) files.insert(files.end(), {"paths.svg", "trajectories.pvd"});
+  return files;
 }
 
 /// Writes FOLDER/trajectories.pvd, which lists the snapshots by time, and
@@ -118,34 +95,35 @@ std::string vtp(const Snapshot& snapshot) {
       array("type=\"Int64\" Name=\"offsets\"", offsets));
 }
 
-void prepare_files(const Scene& scene, const Options& options, const std::string& trace) {
-  refuse_to_overwrite(scene, options, trace);
-  kit::make_folder("--out " + options.out, options.out);
-  kit::require_writable("--json", options.json);
+void prepare_files(const Scene& scene, const Options& options, kit::FileNames& names) {
+  names.reads("SCENE", options.scene);
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    names.reads(fmt::format("objects[{}].field", i), scene.objects[i].field);
+    names.reads(fmt::format("objects[{}].shape.file", i), scene.objects[i].file);
+  }
   if (options.out.empty()) return;
   const fs::path in(options.out);
-  const auto require = [&](const std::string& file) {
-    kit::require_writable("--out " + options.out, (in / file).string());
+  const std::string what = "--out " + options.out;
+  // Names in the folder differ from each other: each is compared with those outside only.
+  const auto check = [&](const fs::path& file) {
+    kit::FileNames(names).writes(what + ":", (in / file).string());
   };
-  for (std::size_t i = 0; scene.outputs.fields && i < scene.objects.size(); ++i)
-    require(field_file(i));
-  if (scene.outputs.slice) require("field.svg");
-  if (scene.outputs.trajectories > 0) {
-    require("paths.svg");
-    require("trajectories.pvd");
-    kit::make_folder("--out " + options.out, in / "trajectories");
-    // Snapshots may be very many, but only one whose name is taken can fail in a folder that can be
-    // written.
-    std::error_code unreadable;
-    for (const fs::directory_entry& taken :
-         fs::directory_iterator(in / "trajectories", unreadable)) {
-      const std::string name = taken.path().filename().string();
-      if (writes_snapshot(scene, name)) require("trajectories/" + name);
-    }
+  for (const std::string& file : files_of(scene, options)) {
+    check(file);
+    kit::require_writable(what, (in / file).string());
   }
-  if (!options.study) return;
-  for (const std::string& picture : study_pictures())
-    kit::require_picture("--out " + options.out, (in / picture).string());
+  if (options.study || scene.outputs.trajectories == 0) return;
+  for (const kit::FileNames::Taken& other : names.taken()) {
+    const std::string name = fs::path(other.path).filename().string();
+    if (is_named_as_snapshot(name)) check(fs::path("trajectories") / name);
+  }
+  kit::make_folder(what, in / "trajectories");
+  // Only a snapshot whose name is taken can fail in a folder that can be written.
+  std::error_code unreadable;
+  for (const fs::directory_entry& taken : fs::directory_iterator(in / "trajectories", unreadable)) {
+    const std::string name = taken.path().filename().string();
+    if (writes_snapshot(scene, name)) kit::require_writable(what, taken.path().string());
+  }
 }
 
 void write_files(const std::string& folder, const Stage& stage, const RunResult& result) {

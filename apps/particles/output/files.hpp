@@ -2,6 +2,7 @@
 // before the run begins, since a run is long. Process 0 writes, all processes check.
 #pragma once
 
+#include "apps/kit/file_names.hpp"
 #include "apps/particles/options.hpp"
 #include "apps/particles/scene/scene.hpp"
 #include "apps/particles/simulation/simulate.hpp"
@@ -10,10 +11,10 @@
 
 namespace particles {
 
-/// Makes the folder of --out, and checks the files that this run will write there and that of
-/// --json; no file replaces another, `trace` (that of --trace), or one that the scene reads. Throws
+/// Checks the files that a run or a study will write to the folder of --out, which is there. None
+/// replaces one of `names` (those of the driver), to which this adds what the scene reads. Throws
 /// Error that names the option, the path and the remedy.
-void prepare_files(const Scene& scene, const Options& options, const std::string& trace);
+void prepare_files(const Scene& scene, const Options& options, kit::FileNames& names);
 
 /// The points of a snapshot with their ids and velocities, as the text of a VTP file for ParaView,
 /// in ASCII: the traced particles are few.

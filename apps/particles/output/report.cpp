@@ -1,6 +1,6 @@
 #include "apps/particles/output/report.hpp"
 
-#include "apps/kit/json.hpp"
+#include "apps/kit/rows.hpp"
 
 #include <fmt/core.h>
 
@@ -16,28 +16,26 @@ std::string_view method_of(const Scene& scene) {
   return name_of(method);
 }
 
-/// Numbers that are not finite become null.
-Json json_of(const Row& row, double dt) {
-  const Measured& m = row.measured;
-  return {{"step", row.step},         {"time", row.step * dt},        {"particles", m.particles},
-          {"blocks", m.blocks},       {"kinetic", m.kinetic.total()}, {"energy", m.energy()},
-          {"fastest", m.fastest},     {"nearest", m.nearest},         {"inside", m.inside},
-          {"tunnelled", m.tunnelled}, {"nonfinite", m.nonfinite}};
+template <auto member>
+Json measure(const Row& row) {
+  return row.measured.*member;
 }
 
-Json json_of(const StudyRow& row) {
-  Json out{
-      {"part", row.part}, {"resolution", static_cast<int>(row.resolution)}, {"method", row.method}};
-  if (!row.note.empty()) {
-    out["refused"] = row.note;
-    return out;
-  }
-  out["stored"] = row.stored;
-  out["look_up"] = row.look_up;
-  out["rule"] = row.rule;
-  for (const StudyColumn& column : study_columns())
-    if (row.*column.value != not_measured) out[column.name] = row.*column.value;
-  return out;
+constexpr kit::Column<Row> columns[] = {
+    {"step", "step", "10", kit::of<&Row::step>},
+    {"time", "time", "12", kit::of<&Row::time>},
+    {"particles", "particles", "12", measure<&Measured::particles>},
+    {"blocks", "blocks", "10", measure<&Measured::blocks>},
+    {"kinetic", "kinetic", "12", [](const Row& r) -> Json { return r.measured.kinetic.total(); }},
+    {"energy", "energy", "12", [](const Row& r) -> Json { return r.measured.energy(); }},
+    {"fastest", "fastest", "12", measure<&Measured::fastest>},
+    {"nearest", "nearest", "12", measure<&Measured::nearest>},
+    {"inside", "inside", "12", measure<&Measured::inside>},
+    {"tunnelled", "tunnelled", "12", measure<&Measured::tunnelled>},
+    {"nonfinite", "nonfinite", "12", measure<&Measured::nonfinite>}};
+const kit::Rows<Row>& measures() {
+  static const kit::Rows<Row> rows(columns);
+  return rows;
 }
 
 Json balance_of(const std::string& strategy, tess::BalanceWhen when,
@@ -50,8 +48,15 @@ Json balance_of(const std::string& strategy, tess::BalanceWhen when,
           {"moves", moves},       {"bytes", bytes},        {"seconds", seconds}};
 }
 
-/// The whole report but the study.
-Json document(const Scene& scene, const RunResult& result, const Report& report) {
+/// A value in a line; "-" for null.
+std::string shown(const Json& value) {
+  if (value.kind() == Json::Kind::null) return "-";
+  return value.kind() == Json::Kind::real ? fmt::format("{:.6g}", value.real()) : value.text();
+}
+
+}  // namespace
+
+Json report(const Scene& scene, const RunResult& result, const RunOptions& options) {
   const Measured& begin = result.rows.front().measured;
   const Measured& end = result.rows.back().measured;
   const FieldCost& fields = result.fields;
@@ -61,9 +66,8 @@ Json document(const Scene& scene, const RunResult& result, const Report& report)
               {"particles", scene.n_particles()},
               {"steps", scene.steps},
               {"dt", scene.dt},
-              {"pes", report.pes},
-              {"processes", report.processes},
-              {"machine", report.machine},
+              {"pes", tess::n_pes()},
+              {"processes", tess::machine().n_processes()},
               {"ns_per_particle_step", per_particle_step(result.seconds)},
               {"ns_in_rules", per_particle_step(result.loop_seconds)},
               {"ns_in_audit", per_particle_step(result.audit_seconds)},
@@ -100,27 +104,17 @@ Json document(const Scene& scene, const RunResult& result, const Report& report)
   out["energy_end"] = end.energy();
   out["block"] = result.block;
   out["exchange"] = result.exchange;
-  if (const auto& balance = report.run.balance)
+  if (const auto& balance = options.balance)
     out["balance"] = balance_of(balance->strategy, balance->when, result.rounds);
-  out["result_hash"] = fmt::format("{:016x}", end.hash);
-  out["rows"] = Json::array();
-  for (const Row& row : result.rows) out["rows"].push_back(json_of(row, scene.dt));
+  out["result_hash"] = kit::hex(end.hash);
+  out["measures"] = measures().json(result.rows);
   return out;
 }
 
-/// A value in a table; "-" for null.
-std::string shown(const Json& value) {
-  if (value.kind() == Json::Kind::null) return "-";
-  return value.kind() == Json::Kind::real ? fmt::format("{:.6g}", value.real()) : value.text();
-}
-
-}  // namespace
-
-std::string table(const Scene& scene, const RunResult& result, const Report& report) {
+std::string table(const Json& report, const RunResult& result) {
   std::string out;
-  const Json whole = document(scene, result, report);
-  for (const auto& [key, value] : whole.members()) {
-    if (key == "rows") continue;
+  for (const auto& [key, value] : report.members()) {
+    if (key == "measures") continue;
     const bool has_parts = value.kind() == Json::Kind::object;
     std::string text = has_parts ? "" : shown(value);
     if (has_parts)
@@ -128,22 +122,7 @@ std::string table(const Scene& scene, const RunResult& result, const Report& rep
         text += (text.empty() ? "" : ", ") + name + " " + shown(part);
     out += fmt::format("  {:<20} {}\n", key, text);
   }
-  const std::vector<Json::Member>& rows = whole.at("rows").members();
-  for (const auto& [name, value] : rows.front().value.members())
-    out += fmt::format(" {:>12}", name);
-  for (const Json::Member& row : rows) {
-    out += '\n';
-    for (const auto& [name, value] : row.value.members())
-      out += fmt::format(" {:>12}", shown(value));
-  }
-  return out + '\n';
-}
-
-std::string json(const Scene& scene, const RunResult& result, const Report& report) {
-  Json out = document(scene, result, report);
-  out["study"] = Json::array();
-  for (const StudyRow& row : report.study) out["study"].push_back(json_of(row));
-  return kit::json_text(out);
+  return out + measures().table(result.rows);
 }
 
 }  // namespace particles

@@ -1,10 +1,10 @@
-// Reports of a run: what it will use, its table, and its JSON file.
+// Reports of a run: what it will use, its table, and its object in the JSON file.
 #pragma once
 
+#include "apps/kit/json.hpp"
 #include "apps/particles/options.hpp"
 #include "apps/particles/scene/scene.hpp"
 #include "apps/particles/simulation/simulate.hpp"
-#include "apps/particles/study/study.hpp"
 
 #include <string>
 
@@ -15,18 +15,13 @@ namespace particles {
   return names[static_cast<std::size_t>(when)];
 }
 
-/// The run beside the machine it ran on.
-struct Report {
-  std::string machine;
-  std::int32_t pes = 0, processes = 0;
-  RunOptions run{};
-  std::vector<StudyRow> study{};
-};
-
 /// For --explain: what a run of the scene uses and builds, what for, and what it leaves out.
-[[nodiscard]] std::string explanation(const Scene& scene, const Options& options);
+[[nodiscard]] std::string explanation(const Scene& scene, const RunOptions& options);
 
-[[nodiscard]] std::string table(const Scene& scene, const RunResult& result, const Report& report);
-[[nodiscard]] std::string json(const Scene& scene, const RunResult& result, const Report& report);
+/// What is known of a run, as an object of `results`; called while the machine runs.
+[[nodiscard]] kit::Json report(const Scene& scene, const RunResult& result,
+                               const RunOptions& options);
+/// A line per member of the report, and a table of the measures.
+[[nodiscard]] std::string table(const kit::Json& report, const RunResult& result);
 
 }  // namespace particles

@@ -133,7 +133,8 @@ tess::Task simulate(std::shared_ptr<Stage> stage, RunResult& result, RunOptions 
     stretch.ask = asked(scene, step);
     if (stretch.ask != Stretch::nothing) co_await tess::epoch(move);
     if ((stretch.ask & Stretch::measure) != 0) {
-      result.rows.push_back({step, co_await stations.reduce<&Station::give_measured>()});
+      const Measured measured = co_await stations.reduce<&Station::give_measured>();
+      result.rows.push_back({step, step * scene.dt, measured});
     }
     if ((stretch.ask & Stretch::trace) != 0) {
       std::vector<Sample> all = co_await stations.reduce<&Station::give_samples>();

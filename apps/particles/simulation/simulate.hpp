@@ -17,6 +17,7 @@ namespace particles {
 /// The measures after so many steps.
 struct Row {
   std::int32_t step = 0;
+  double time = 0;
   Measured measured;
 };
 

@@ -1,7 +1,6 @@
 #include "apps/particles/stability/parts.hpp"
 
 #include <algorithm>
-#include <fmt/core.h>
 
 namespace tess::dn {
 namespace stability {
@@ -233,23 +232,12 @@ void stiff_rules(Rows& rows) {
 
 }  // namespace stability
 
-std::vector<StabilityRow> stability_report() {
+std::vector<kit::Case> stability_report() {
   stability::Rows rows;
   stability::stiff_rules(rows);
   stability::extreme_motion(rows);
   stability::extreme_places(rows);
   return rows.rows;
-}
-
-std::string text_of(const std::vector<StabilityRow>& rows) {
-  constexpr const char* line = "{:<36} {:<16} {:>11} {:>11} {:>11}{}\n";
-  std::string text = fmt::format(line, "case", "parameter", "value", "met", "tolerance", "");
-  const auto number = [](double value) { return fmt::format("{:.4g}", value); };
-  for (const StabilityRow& row : rows)
-    text += fmt::format(line, row.name, row.parameter, number(row.value), number(row.met),
-                        number(row.tolerance), row.ok ? "" : "  FAILED");
-  return text + fmt::format("{} cases, {} failed\n", rows.size(),
-                            std::ranges::count(rows, false, &StabilityRow::ok));
 }
 
 }  // namespace tess::dn

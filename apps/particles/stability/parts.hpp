@@ -13,7 +13,7 @@ namespace tess::dn::stability {
 using kit::worsen;
 
 struct Rows {
-  std::vector<StabilityRow> rows;
+  std::vector<kit::Case> rows;
 
   void add(std::string name, std::string parameter, double value, double met, double tolerance) {
     rows.push_back(

@@ -91,15 +91,16 @@ void compare(const Field& field, LookUp kind, const Samples& samples, StudyRow& 
   std::vector<float> distance(n), nx(n), ny(n), nz(n);
   look_up(field, kind, {samples.x, samples.y, samples.z}, {distance, nx, ny, nz});
   RootMeanSquare distances, angles;
-  row.distance_error_max = 0;
+  double greatest = 0;
   for (std::size_t i = 0; i < n; ++i) {
     const double error = std::abs(static_cast<double>(distance[i]) - samples.distance[i]);
     distances.add(error);
-    row.distance_error_max = std::max(row.distance_error_max, error);
+    greatest = std::max(greatest, error);
     const Vec3 normal{nx[i], ny[i], nz[i]};
     angles.add(normal != Vec3{} ? degrees_between(normal, samples.normal[i]) : 180);
   }
   row.distance_error = distances.value();
+  row.distance_error_max = greatest;
   row.normal_error = angles.value();
 }
 
@@ -111,14 +112,14 @@ void compare_bounces(const Object& object, const Rules& rules, double dt, const 
   const Stepper stepper = make_stepper(rules, dt);
   const auto n_steps = static_cast<int>(std::ceil(3 * subject.thickness / dt));
   const double near = 2 * object.field->grid.cell;
-  row.penetration = row.lost = 0;
+  double deepest = 0, n_lost = 0;
   row.bounces = static_cast<double>(particles.size());
   for (int step = 0; step < n_steps; ++step) {
     stepper.run(particles.span(), objects, step * dt);
     for (std::size_t p = 0; p < particles.size(); ++p) {
       const Vec3 at = particles.position(p);
       if (!(distance_at(object, at) < near) || !subject.tree.is_inside(at)) continue;
-      row.penetration = std::max(row.penetration, std::sqrt(subject.tree.closest(at).distance2));
+      deepest = std::max(deepest, std::sqrt(subject.tree.closest(at).distance2));
     }
   }
   RootMeanSquare places, angles;
@@ -126,13 +127,15 @@ void compare_bounces(const Object& object, const Rules& rules, double dt, const 
     const Bounce& b = subject.bounces[p];
     const Vec3 place = particles.position(p), velocity = particles.velocity(p);
     if (!(dot(velocity, b.normal()) > 0) || subject.tree.is_inside(place)) {
-      ++row.lost;
+      ++n_lost;
       continue;
     }
     const double time = bounce_time(b, place, velocity, n_steps * dt);
     places.add(norm(b.start + time * b.velocity - b.hit));
     angles.add(degrees_between(velocity, b.outgoing));
   }
+  row.penetration = deepest;
+  row.lost = n_lost;
   if (places.n == 0) return;  // not measured
   row.place_error = places.value();
   row.angle_error = angles.value();

@@ -103,7 +103,7 @@ class Study {
           object.grid = grid_around(bounds(object.surface), resolution, object.thickness);
           cost = least_cost([&] { field = build_alone(object, Content::distance_and_normal); });
         } catch (const tess::Error& error) {
-          row.note = error.what();
+          row.note = std::string("refused: ") + error.what();
           rows_.push_back(row);
           continue;
         }
@@ -120,7 +120,7 @@ class Study {
   void study_compressed(const Field& field, const Samples& samples, StudyRow row) {
     Field compressed;
     const Cost cost = least_cost([&] { compressed = compress(field, bound_of({}, field)); });
-    row.build_seconds += cost.wall, row.build_cpu_seconds += cost.cpu;
+    *row.build_seconds += cost.wall, *row.build_cpu_seconds += cost.cpu;
     row.bytes = static_cast<double>(compressed.bytes());
     row.stored = "compressed";
     study_look_ups(compressed, samples, row);
@@ -134,24 +134,23 @@ class Study {
       row.order = order_of(row);
       const Object object{&field, {}};
       const Rules rules = impact_rules(kind, Sweep::on);
-      compare_bounces(object, rules, row.step * subject_.thickness, subject_, row);
+      compare_bounces(object, rules, *row.step * subject_.thickness, subject_, row);
       time_crowd(&object, rules, subject_, options_.n_timed, row);
       rows_.push_back(row);
     }
   }
 
   /// The power of the cell with which the error of the distance fell since the next coarser field.
-  [[nodiscard]] double order_of(const StudyRow& row) const {
+  [[nodiscard]] Measurement order_of(const StudyRow& row) const {
     const StudyRow* coarser = nullptr;
     for (const StudyRow& other : rows_)
       if (other.method == row.method && other.stored == row.stored &&
           other.look_up == row.look_up && other.resolution < row.resolution &&
           (coarser == nullptr || other.resolution > coarser->resolution))
         coarser = &other;
-    if (coarser == nullptr || !(coarser->distance_error > 0) || !(row.distance_error > 0))
-      return not_measured;
-    return std::log(coarser->distance_error / row.distance_error) /
-           std::log((row.resolution - 1.0) / (coarser->resolution - 1.0));
+    if (coarser == nullptr || !coarser->distance_error || !row.distance_error) return {};
+    return kit::order_between({1 / (coarser->resolution - 1.0), *coarser->distance_error},
+                              {1 / (row.resolution - 1.0), *row.distance_error});
   }
 
   /// All rules by themselves, at several steps, in the object's own field.
@@ -229,15 +228,15 @@ class Study {
       }
     row.look_up.clear();
     row.stored.clear();
-    row.bytes = not_measured;
+    row.bytes.reset();
     for (const double part : {1.0, 0.1}) {
       row.rule = part == 1 ? "tree of boxes, whole thickness" : "tree of boxes, way of a step";
       time_tree(part * subject_.thickness, row);
       rows_.push_back(row);
     }
-    const double none = rows_[first].cpu_ns, tree = row.cpu_ns;
+    const double none = *rows_[first].cpu_ns, tree = *row.cpu_ns;
     for (std::size_t i = first + 1; i < rows_.size(); ++i)
-      rows_[i].relative = (rows_[i].cpu_ns - (rows_[i].stored.empty() ? 0 : none)) / tree;
+      rows_[i].relative = (*rows_[i].cpu_ns - (rows_[i].stored.empty() ? 0 : none)) / tree;
   }
 
   /// Times the search for the closest triangle nearer than `reach` of each particle.

@@ -4,50 +4,41 @@
 #pragma once
 
 #include "apps/kit/progress.hpp"
+#include "apps/kit/rows.hpp"
 #include "apps/particles/scene/scene.hpp"
 
-#include <cmath>
-#include <span>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace particles {
 
-/// Of a value that was not measured in a row. Measured ones may be negative: an order where the
-/// error grew, the cost of collision where its difference of two times is noise.
-inline constexpr double not_measured = -HUGE_VAL;
+/// What was measured. It may be negative: an order where the error grew, the cost of collision
+/// where its difference of two times is noise.
+using Measurement = std::optional<double>;
 
 /// One choice. Lengths are in the object's units. Times are the least of several measurements (see
 /// least_cost()).
 struct StudyRow {
   std::string part;                           ///< field, rule, cost
-  double resolution = 0;                      ///< voxels along an axis
+  int resolution = 0;                         ///< voxels along an axis
   std::string method, stored, look_up, rule;  ///< stored: flat, compressed; empty: no field
-  double step = not_measured;                 ///< speed × dt as a part of the thickness
-  double build_seconds = not_measured, build_cpu_seconds = not_measured;
-  double bytes = not_measured;
-  double distance_error = not_measured;  ///< RMS, against the closest point of the triangles
-  double order = not_measured;           ///< the power of the cell with which distance_error fell
-  double distance_error_max = not_measured;  ///< of the same points
-  double normal_error = not_measured;        ///< RMS, in degrees
-  double penetration = not_measured;         ///< greatest depth below the triangles
-  double place_error = not_measured;         ///< RMS distance of bounces from where they should be
-  double angle_error = not_measured;         ///< RMS, in degrees, of the velocity after the bounce
-  double lost = not_measured;     ///< particles that went in, or on as if there were no object
-  double bounces = not_measured;  ///< out of so many
-  double ns = not_measured, cpu_ns = not_measured;  ///< per particle and step
-  double relative = not_measured;  ///< cost of collision as a part of that by a tree of boxes
-  std::string note;                ///< why a choice is refused
+  Measurement step;                           ///< speed × dt as a part of the thickness
+  Measurement build_seconds, build_cpu_seconds;
+  Measurement bytes;
+  Measurement distance_error;      ///< RMS, against the closest point of the triangles
+  Measurement order;               ///< the power of the cell with which distance_error fell
+  Measurement distance_error_max;  ///< of the same points
+  Measurement normal_error;        ///< RMS, in degrees
+  Measurement penetration;         ///< greatest depth below the triangles
+  Measurement place_error;         ///< RMS distance of bounces from where they should be
+  Measurement angle_error;         ///< RMS, in degrees, of the velocity after the bounce
+  Measurement lost;                ///< particles that went in, or on as if there were no object
+  Measurement bounces;             ///< out of so many
+  Measurement ns, cpu_ns;          ///< per particle and step
+  Measurement relative;            ///< cost of collision as a part of that by a tree of boxes
+  std::string note;                ///< why a choice is refused; else empty
 };
-
-/// A number of a row, for the table and the files.
-struct StudyColumn {
-  const char* name;    ///< in JSON
-  const char* title;   ///< in the table
-  const char* format;  ///< in the table
-  double StudyRow::*value;
-};
-[[nodiscard]] std::span<const StudyColumn> study_columns();
 
 struct StudyOptions {
   std::vector<int> resolutions{16, 32, 64};
@@ -63,10 +54,11 @@ struct StudyOptions {
 /// 0.002), and cost beside a tree of boxes. The scene has an object.
 [[nodiscard]] std::vector<StudyRow> study(const Scene& scene, const StudyOptions& options);
 
+[[nodiscard]] const kit::Rows<StudyRow>& study_report();
 [[nodiscard]] std::string study_table(const std::vector<StudyRow>& rows);
 
 /// Writes pictures to a folder, each with its data as CSV.
-void write_study(const std::string& folder, const std::vector<StudyRow>& rows);
+void draw_study(const std::string& folder, const std::vector<StudyRow>& rows);
 /// Their names in the folder.
 [[nodiscard]] std::vector<std::string> study_pictures();
 

@@ -34,6 +34,17 @@ Scene with_object(const std::string& object, const std::string& outputs = "{}") 
                      "scene.json");
 }
 
+/// Why the files of a run or study are refused beside others that are written; empty if they are
+/// not.
+std::string message(const Scene& scene, const Options& options,
+                    const std::vector<std::pair<std::string, std::string>>& written = {}) {
+  return tess::test::message_of([&] {
+    kit::FileNames names;
+    for (const auto& [option, file] : written) names.writes(option, file);
+    prepare_files(scene, options, names);
+  });
+}
+
 }  // namespace
 
 TEST_CASE("a snapshot's file holds each particle once, in the order of ids", "[particles]") {
@@ -210,29 +221,31 @@ TEST_CASE("a run replaces none of the files that it reads or writes", "[particle
   const std::string out = scratch.path("out");
   Options options;
   options.out = out;
-  options.study = true;
+  std::filesystem::create_directory(out);
+  std::string json;
   const auto refusal = [&](const std::string& trace = {}) {
-    return tess::test::message_of([&] { prepare_files(scene, options, trace); });
+    return message(scene, options, {{"--json", json}, {"--trace", trace}});
   };
   for (const char* file :
        {"field_0.dnf", "field.svg", "paths.svg", "trajectories.pvd",
         "trajectories/step_000000020.vtp", "study_distance.svg", "study_step.csv"}) {
     CAPTURE(file);
+    options.study = std::string_view(file).starts_with("study");
     scene.objects[0].field = out + "/./" + file;
     CHECK_THAT(refusal(), Catch::Contains("would overwrite objects[0].field"));
     scene.objects[0].field.clear();
     scene.objects[0].file = out + "/" + file;
     CHECK_THAT(refusal(), Catch::Contains("would overwrite objects[0].shape.file"));
     scene.objects[0].file.clear();
-    options.json = out + "/" + file;
+    json = out + "/" + file;
     CHECK_THAT(refusal(), Catch::Contains("would overwrite --json"));
-    options.json.clear();
+    json.clear();
     CHECK_THAT(refusal(out + "/" + file), Catch::Contains("would overwrite --trace"));
   }
-  scene.objects[0].field = options.json = scratch.path("field.dnf");
+  scene.objects[0].field = json = scratch.path("field.dnf");
   CHECK_THAT(refusal(), Catch::Contains("would overwrite objects[0].field"));
-  options.json.clear();
-  prepare_files(scene, options, scratch.path("trace.json"));
+  json.clear();
+  CHECK(refusal(scratch.path("trace.json")).empty());
 }
 
 TEST_CASE("the mesh that a scene reads is not overwritten", "[particles]") {
@@ -242,9 +255,7 @@ TEST_CASE("the mesh that a scene reads is not overwritten", "[particles]") {
       with_object(R"({"sides": "two", "shape": {"file": ")" + mesh + R"("}})", R"({"slice": {}})");
   CHECK(scene.objects[0].file == mesh);
   const auto refusal = [&](const std::string& json, const std::string& trace) {
-    Options options;
-    options.json = json;
-    return tess::test::message_of([&] { prepare_files(scene, options, trace); });
+    return message(scene, {}, {{"--json", json}, {"--trace", trace}});
   };
   CHECK_THAT(refusal(mesh, ""), Catch::Contains("would overwrite objects[0].shape.file"));
   CHECK_THAT(refusal("", mesh), Catch::Contains("would overwrite objects[0].shape.file"));
@@ -258,22 +269,25 @@ TEST_CASE("a file that cannot be written is refused before the run", "[particles
   scene.outputs.fields = true;
   Options options;
   options.out = scratch.path("out");
-  options.study = true;
   for (const char* file :
        {"field_0.dnf", "field.svg", "paths.svg", "trajectories.pvd",
         "trajectories/step_000000000.vtp", "trajectories/step_000000020.vtp",
         "trajectories/step_000000100.vtp", "study_distance.svg", "study_step.csv"}) {
     CAPTURE(file);
+    options.study = std::string_view(file).starts_with("study");
     const std::string taken = options.out + "/" + file;
     std::filesystem::create_directories(taken);
-    CHECK_THAT(tess::test::message_of([&] { prepare_files(scene, options, {}); }),
+    CHECK_THAT(message(scene, options),
                Catch::Contains(taken + ": cannot be written: is a directory"));
     std::filesystem::remove(taken);
   }
   // Names that this run does not write.
   for (const char* file : {"step_000000030.vtp", "step_000000120.vtp", "step_20.vtp", "step_.vtp"})
     std::filesystem::create_directories(options.out + "/trajectories/" + file);
-  prepare_files(scene, options, {});
+  for (const bool study : {false, true}) {
+    options.study = study;
+    CHECK(message(scene, options).empty());
+  }
 }
 
 TEST_CASE("the shadow of a torus has its hole", "[particles]") {

@@ -25,7 +25,7 @@ for ((i = 0; i < times; ++i)); do
   code=$?
   step=$(sed -n 's/^continues after step //p' "$scratch/out")
   [[ -e "$folder/checkpoint-$(printf %06d "$last")/manifest.json" ]] || n_unfinished=$((${n_unfinished:-0} + 1))
-  if ((code == 0)) && cmp -s "$scratch/want.json" "$scratch/result.json" && ((step >= 10 * (last - 1))); then
+  if ((code == 0)) && same_results "$scratch/want.json" "$scratch/result.json" && ((step >= 10 * (last - 1))); then
     pass
   else
     fail "time $i: exit code $code, checkpoint $last was begun, the run continued after step '$step'"
