@@ -155,10 +155,9 @@ tess::SimulatedOptions machine_of(const Ladder& ladder, std::int32_t n_pes) {
   return machine;
 }
 
-using R = const PesRow&;
 using kit::Json, kit::of;
 
-constexpr kit::Column<PesRow> columns[] = {
+constexpr kit::Column<PesRow> pes_columns[] = {
     {"pes", "PEs", "6", of<&PesRow::n_pes>},
     {"balance", "balance", "<14", of<&PesRow::balance>},
     {"objects", "objects", "10", of<&PesRow::n_objects>},
@@ -168,9 +167,10 @@ constexpr kit::Column<PesRow> columns[] = {
     {"speed_up", "speed-up", "8.2f", of<&PesRow::speed_up>},
     {"efficiency", "efficiency", "10.3f", of<&PesRow::efficiency>},
     {"seconds", "measured s", "12.6f", of<&PesRow::measured>},
-    {"pairs", "pairs", "12", [](R r) -> Json { return r.answer.n_pairs; }},
-    {"result_hash", "result", "16", [](R r) -> Json { return kit::hex(r.answer.hash); }},
-    {"", "", "<", [](R r) -> Json { return r.agrees ? "" : "OTHER PAIRS"; }}};
+    {"pairs", "pairs", "12", [](const PesRow& r) -> Json { return r.answer.n_pairs; }},
+    {"result_hash", "result", "16",
+     [](const PesRow& r) -> Json { return kit::hex(r.answer.hash); }},
+    {"", "", "<", [](const PesRow& r) -> Json { return r.agrees ? "" : "OTHER PAIRS"; }}};
 
 }  // namespace
 
@@ -219,7 +219,7 @@ std::vector<PesRow> study_pes(const Options& options, kit::Progress& progress,
 }
 
 const kit::Rows<PesRow>& pes_report() {
-  static const kit::Rows<PesRow> rows(columns);
+  static const kit::Rows<PesRow> rows(pes_columns);
   return rows;
 }
 
