@@ -20,11 +20,13 @@ class FileNames {
   /// The same for a picture and its data beside it.
   void writes_picture(const std::string& what, const std::string& svg);
 
- private:
   struct Taken {
-    std::string option, path;
+    std::string what, path;
     bool is_written;
   };
+  [[nodiscard]] const std::vector<Taken>& taken() const { return taken_; }
+
+ private:
   void take(Taken file);
 
   std::vector<Taken> taken_;

@@ -3,23 +3,21 @@
 
     expect.py FOLDER COMPILER OPTION…
 
-The first line of each FOLDER/*.cpp is "// expect: SENTENCE". Where the sentence is the compiler's own,
-the second line has that of clang: "// expect of clang: SENTENCE". One of the errors of the file must
-contain the sentence.
+A misuse begins with a line "// expect: SENTENCE" in FOLDER/*.cpp and ends at the next empty line. Where
+the sentence is the compiler's own, the second line has that of clang: "// expect of clang: SENTENCE".
+An error that a line of the misuse makes, or leads to in a header, must contain the sentence. A line
+"// control: SENTENCE" begins code without such an error, which this check must notice.
 
-All files are compiled at once, each in a namespace that has its name, since the compiler spends most
-of its time on the precompiled header. A file that seems to have no such error there is compiled again
-with fewer others, and at last alone and outside a namespace, which decides. A file needs that if it
-specialises templates, or if another file makes the same error in the same instantiation, which the
-compiler reports only once.
-
-FOLDER/control/*.cpp are compiled with the others and must be reported: what each lacks is its sentence.
+All misuses are compiled at once, each file in a namespace, since the compiler spends most of its time
+on the precompiled header. A misuse that seems to have no such error is compiled again with fewer others,
+and at last alone, which decides: the compiler reports an error of one instantiation only once.
 """
 import os
 import pathlib
 import re
 import subprocess
 import sys
+from dataclasses import dataclass
 
 folder, compiler = pathlib.Path(sys.argv[1]), sys.argv[2:]
 environment = dict(os.environ, LC_ALL="C.UTF-8")  # error texts are not translated
@@ -34,39 +32,62 @@ is_clang = "clang" in output_of([compiler[0], "--version"])
 # No error is left out, and no line of those that lead to an error.
 compiler += ["-fsyntax-only", "-ferror-limit=0" if is_clang else "-fmax-errors=0",
              "-ftemplate-backtrace-limit=0", "-x", "c++", "-"]
+sources = {path.name: path.read_text(encoding="utf-8").splitlines() for path in sorted(folder.glob("*.cpp"))}
 
 
-def sentence_of(file):
-    lines = file.read_text(encoding="utf-8").splitlines() + ["", ""]
-    first = re.fullmatch("// expect: (.+)", lines[0])
-    of_clang = re.fullmatch("// expect of clang: (.+)", lines[1])
-    if not first:
-        sys.exit(f"{file}: the first line names no sentence: // expect: …")
-    return (of_clang if is_clang and of_clang else first)[1]
+@dataclass(frozen=True)
+class Misuse:
+    file: str
+    first: int  # its lines, from 1
+    last: int
+    is_control: bool
+    sentence: str
 
 
-def source(files):
-    if len(files) == 1:
-        return f'#include "{files[0]}"\n'
-    # The headers come first: inside a namespace they are included again, which does nothing.
-    headers = {line for file in files for line in file.read_text(encoding="utf-8").splitlines()
-               if line.startswith("#include")}
-    return "\n".join(sorted(headers)) + "\n" + "".join(
-        f'namespace {file.stem} {{\n#include "{file}"\n}}\n' for file in files)
+def misuses_of(file, lines):
+    for number, line in enumerate(lines, 1):
+        begins = re.fullmatch(" *// (expect|control): (.+)", line)
+        if not begins:
+            continue
+        last = next(n for n in range(number, len(lines) + 1) if n == len(lines) or not lines[n])
+        of_clang = re.fullmatch(" *// expect of clang: (.+)", lines[number]) if is_clang else None
+        sentence = of_clang[1] if of_clang else begins[2]
+        yield Misuse(file, number, last, begins[1] == "control", sentence)
 
 
-def errors(output, files):
-    """The errors of each file. An error in a header belongs to the file that instantiates it, which is
-    named by its path or as a namespace: gcc names it before the error, clang in notes after it. Neither
-    repeats it for further errors of the same instantiation."""
-    if len(files) == 1:
-        return {files[0]: [line for line in output.splitlines() if "error: " in line]}
-    names = {str(file): file for file in files} | {f"{file.stem}::": file for file in files}
-    name = re.compile("|".join(r"(?<!\w)" + re.escape(text) for text in names))
-    found = {file: [] for file in [*files, None]}
+every = [misuse for file, lines in sources.items() for misuse in misuses_of(file, lines)]
+
+
+def source(misuses):
+    """All files, without the lines of other misuses. Their headers come first, outside the namespaces."""
+    left_out = {(one.file, n) for one in every if one not in misuses for n in range(one.first, one.last + 1)}
+    headers = {line for lines in sources.values() for line in lines if line.startswith("#include")}
+    text = "\n".join(sorted(headers)) + "\n"
+    for file, lines in sources.items():
+        text += f'namespace {pathlib.Path(file).stem} {{\n#line 1 "{file}"\n'
+        for number, line in enumerate(lines, 1):
+            text += ("" if line.startswith("#") or (file, number) in left_out else line) + "\n"
+        text += "}\n"
+    return text
+
+
+def errors(output, misuses):
+    """The errors of each misuse. An error in a header belongs to the line that instantiates it, or to a class
+    that the misuse defines: gcc names them before the error, clang in notes after it. Neither repeats it for
+    further errors of the same instantiation."""
+    if len(misuses) == 1:
+        return {misuses[0]: [line for line in output.splitlines() if "error: " in line]}
+    names = {}
+    for one in misuses:
+        for number, line in enumerate(sources[one.file][one.first:one.last], one.first + 1):
+            names[f"{one.file}:{number}"] = one
+            for name in re.findall(r"^(?:struct|class) (\w+)", line):
+                names[f"{pathlib.Path(one.file).stem}::{name}"] = one
+    place = re.compile(r"\w+\.cpp:\d+|(?:" + "|".join(pathlib.Path(file).stem for file in sources) + r")::\w+")
+    found = {one: [] for one in [*misuses, None]}
     owner, error = None, None
     for line in output.splitlines():
-        named = names[name.search(line)[0]] if name.search(line) else None
+        named = next((names[text] for text in place.findall(line) if text in names), None)
         if "error: " in line:
             owner = named or owner
             error = line
@@ -82,34 +103,32 @@ def errors(output, files):
     return found
 
 
-def unfulfilled(files):
-    """The files without an error that contains their sentence, and the compiler's output."""
-    output = output_of(compiler, source(files))
-    found = errors(output, files)
-    return [file for file in files if not any(sentence_of(file) in error for error in found[file])], output
+def unfulfilled(misuses):
+    """The misuses without an error that contains their sentence, and the compiler's output."""
+    output = output_of(compiler, source(misuses))
+    found = errors(output, misuses)
+    return [one for one in misuses if not any(one.sentence in error for error in found[one])], output
 
 
-def check(files, controls=()):
-    """The number of files that do not fail with their sentence."""
-    missing, output = unfulfilled([*files, *controls])
-    not_reported = set(controls) - set(missing)
-    if not_reported:
-        sys.exit(f"this check finds sentences that are not there: {', '.join(map(str, not_reported))}\n{output}")
-    missing = [file for file in missing if file not in controls]
-    if len(files) > 1:
+def check(misuses, controls=()):
+    """The number of misuses that do not fail with their sentence."""
+    missing, output = unfulfilled([*misuses, *controls])
+    not_noticed = set(controls) - set(missing)
+    if not_noticed:
+        sys.exit(f"this check finds sentences that are not there: {not_noticed}\n{output}")
+    missing = [one for one in missing if not one.is_control]
+    if len(misuses) > 1:
         half = (len(missing) + 1) // 2
         return sum(check(part) for part in (missing[:half], missing[half:]) if part)
-    for file in missing:
-        if "error: " in output:
-            print(f"{file} does not fail with: {sentence_of(file)}\n{output[:3000]}")
-        else:
-            print(f"{file} compiles, but should not: {sentence_of(file)}\n{output[:3000]}")
+    for one in missing:
+        what = "does not fail with" if "error: " in output else "compiles, but should not"
+        print(f"{one.file}:{one.first} {what}: {one.sentence}\n{output[:3000]}")
     if not missing:
-        print(f"{files[0]} fails as expected, but only when compiled alone")
+        print(f"{misuses[0].file}:{misuses[0].first} fails as expected, but only when compiled alone")
     return len(missing)
 
 
-misuses, controls = sorted(folder.glob("*.cpp")), sorted(folder.glob("control/*.cpp"))
+misuses, controls = [[one for one in every if one.is_control == wanted] for wanted in (False, True)]
 if not misuses or not controls:
     sys.exit(f"{folder} has no misuses, or none to control this check")
 n_failed = check(misuses, controls)

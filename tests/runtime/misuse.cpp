@@ -205,27 +205,23 @@ class Meter : public tess::Chare<Meter> {
   void give_in_order(tess::Callback<double> target) {
     contribute(tess::in_order(Mean{}), Mean::Part{}, target);
   }
-  struct ToSome {
-    tess::SectionProxy<Meter> section;
-    tess::Callback<double> target;
-  };
-  void give_to(ToSome to) { contribute(to.section, Mean{}, Mean::Part{}, to.target); }
+  void give_to(tess::SectionProxy<Meter> section, const tess::Callback<double>& target) {
+    contribute(section, Mean{}, Mean::Part{}, target);
+  }
 };
 
-template <auto Method>
-tess::Task mean_of_none() {
-  const auto meters = tess::create<Meter>(tess::range(3));
-  tess::Future<double> mean;
-  meters.broadcast<Method>(mean.callback());
-  (void)co_await mean;
+/// Ends the run with an error before the result is there.
+template <class T>
+tess::Task await_result(tess::Future<T> result) {
+  (void)co_await result;
 }
 
+auto meters() {
+  return tess::create<Meter>(tess::range(3));
+}
 tess::Task mean_of_none_in_section() {
-  const auto meters = tess::create<Meter>(tess::range(3));
-  const auto some = tess::create_section(meters, {{0}, {2}});
-  tess::Future<double> mean;
-  some.broadcast<&Meter::give_to>(Meter::ToSome{some, mean.callback()});
-  (void)co_await mean;
+  const auto some = tess::create_section(meters(), {{0}, {2}});
+  return await_result(some.reduce<&Meter::give_to>(some));
 }
 
 /// Sends from its destructor, which runs at the end of the run if the array is not destroyed.
@@ -288,26 +284,6 @@ tess::Task sleep_twice() {
   co_await second;
 }
 
-/// Contributes to a section of another array of its class.
-class Voter : public tess::Chare<Voter> {
- public:
-  struct Vote {
-    tess::SectionProxy<Voter> section;
-    tess::Callback<int> target;
-  };
-  void vote(Vote vote) { contribute(vote.section, tess::sum, 1, vote.target); }
-};
-
-tess::Task vote_elsewhere() {
-  const auto voters = tess::create<Voter>(tess::range(2)),
-             others = tess::create<Voter>(tess::range(2));
-  const auto section = tess::create_section(others, {{0}, {1}});
-  tess::Future<int> sum;
-  const Voter::Vote vote{section, sum.callback()};
-  voters[{1}].send<&Voter::vote>(vote);
-  (void)co_await sum;
-}
-
 /// Reads, where it arrives, another number of bytes than it wrote.
 template <class Value>
 class Carrier : public tess::Chare<Carrier<Value>, tess::Index1> {
@@ -354,25 +330,8 @@ void hear_and_catch() {
 }
 template <class Value>
 tess::Task sum_all() {
-  const auto carriers = tess::create<Carrier<Value>>(tess::range(tess::n_pes()));
-  tess::Future<Value> sum;
-  carriers.template broadcast<&Carrier<Value>::give>(sum.callback());
-  (void)co_await sum;
-}
-
-tess::Task sum_of_none() {
-  const auto blocks = tess::create<Block>(tess::sparse);
-  tess::Future<int> sum;
-  blocks.broadcast<&Block::give>(sum.callback());
-  (void)co_await sum;
-}
-
-tess::Task sum_of_empty_section() {
-  const auto blocks = tess::create<Block>(tess::range(3));
-  const auto none = tess::create_section(blocks, {});
-  tess::Future<int> sum;
-  none.broadcast<&Block::give>(sum.callback());
-  (void)co_await sum;
+  return await_result(tess::create<Carrier<Value>>(tess::range(tess::n_pes()))
+                          .template reduce<&Carrier<Value>::give>());
 }
 
 /// Contributes to a section of which it may be no member.
@@ -391,7 +350,16 @@ tess::Task sum_with_a_missing_member() {
   const auto section = tess::create_section(all, {{0}, {6}});
   tess::Future<int> sum;
   all[{0}].send<&Stranger::vote>(section, sum.callback());
-  (void)co_await sum;
+  return await_result(std::move(sum));
+}
+
+/// Of a section of another array of its class.
+tess::Task vote_elsewhere() {
+  const auto all = tess::create<Stranger>(tess::range(2)),
+             others = tess::create<Stranger>(tess::range(2));
+  tess::Future<int> sum;
+  all[{1}].send<&Stranger::vote>(tess::create_section(others, {{0}, {1}}), sum.callback());
+  return await_result(std::move(sum));
 }
 
 /// The epoch waits for the elements of the section that is created in it.
@@ -421,22 +389,7 @@ tess::Task await_every() {
 }
 
 tess::Task any_of_none() {
-  std::vector<tess::Future<int>> none;
-  (void)co_await tess::when_any(std::move(none));
-}
-
-tess::Task sum_scaled() {
-  const auto blocks = tess::create<Block>(tess::range(3));
-  tess::Future<int> sum;
-  blocks.broadcast<&Block::give_scaled>(sum.callback());
-  (void)co_await sum;
-}
-
-tess::Task sum_different() {
-  const auto blocks = tess::create<Block>(tess::range(2));
-  tess::Future<int> sum;
-  blocks.broadcast<&Block::give_different>(sum.callback());
-  (void)co_await sum;
+  (void)co_await tess::when_any(std::vector<tess::Future<int>>());
 }
 
 tess::Task use_after_end() {
@@ -606,9 +559,9 @@ const std::map<std::string, std::function<void()>> misuses{
     {"empty_callback", [] { blocks()[{2}].send<&Block::answer>(tess::Callback<int>()); }},
     {"empty_target", [] { blocks().broadcast<&Block::give>(tess::Callback<int>()); }},
     {"different_targets", [] { blocks().broadcast<&Block::give_to_some>(); }},
-    {"insert_between_rounds", [] { const tess::Task task = insert_between_rounds(); }},
+    {"insert_between_rounds", &insert_between_rounds},
     {"insert_unawaited", &insert_unawaited},
-    {"join_too_late", [] { const tess::Task task = join_too_late(); }},
+    {"join_too_late", &join_too_late},
     {"join_before_all",
      [] { tess::create<Driven>(tess::range(1))[{1}].insert(tess::RoundId{-1}); }},
     {"round_twice",
@@ -620,10 +573,10 @@ const std::map<std::string, std::function<void()>> misuses{
      [] { tess::create<Driven>(tess::range(2))[{1}].send<&Driven::give_to>(tess::RoundId{64}); }},
     {"end_in_a_gap",
      [] { tess::create<Driven>(tess::range(2))[{1}].send<&Driven::give_and_end>(); }},
-    {"different_operations", [] { const tess::Task task = sum_scaled(); }},
-    {"any_of_none", [] { const tess::Task task = any_of_none(); }},
-    {"await_every", [] { const tess::Task task = await_every(); }},
-    {"different_values", [] { const tess::Task task = sum_different(); }},
+    {"different_operations", [] { return await_result(blocks().reduce<&Block::give_scaled>()); }},
+    {"any_of_none", &any_of_none},
+    {"await_every", &await_every},
+    {"different_values", [] { return await_result(blocks().reduce<&Block::give_different>()); }},
     {"empty_proxy", [] { tess::ElementProxy<Block>().send<&Block::nothing>(); }},
     {"empty_array", [] { tess::ArrayProxy<Block>().broadcast<&Block::nothing>(); }},
     {"index_of_64_bits", [] { blocks()[std::int64_t{1} << 32U].send<&Block::nothing>(); }},
@@ -635,16 +588,15 @@ const std::map<std::string, std::function<void()>> misuses{
     {"empty_array_ends", [] { tess::ArrayProxy<Block>().destroy(); }},
     {"empty_group", [] { tess::GroupProxy<Member>().broadcast<&Member::nothing>(); }},
     {"empty_group_local", [] { tess::GroupProxy<Member>().local().nothing(); }},
-    {"future_awaited_twice", [] { const tess::Task task = future_awaited_twice(); }},
-    {"nested_tasks", [] { const tess::Task task = count_down(1'000'000); }},
-    {"task_awaited_at_once", [] { const tess::Task task = task_awaited_at_once(); }},
-    {"value_awaited_twice", [] { const tess::Task task = value_awaited_twice(); }},
-    {"ask_awaited_twice", [] { const tess::Task task = ask_awaited_twice(); }},
-    {"future_after_move", [] { const tess::Task task = future_after_move(); }},
-    {"future_left_early",
-     [] { const tess::Task task = keep_future(std::chrono::milliseconds(200)); }},
-    {"future_left_late", [] { const tess::Task task = keep_future(std::chrono::nanoseconds(0)); }},
-    {"future_given_two", [] { const tess::Task task = future_given_two(); }},
+    {"future_awaited_twice", &future_awaited_twice},
+    {"nested_tasks", [] { return count_down(1'000'000); }},
+    {"task_awaited_at_once", &task_awaited_at_once},
+    {"value_awaited_twice", &value_awaited_twice},
+    {"ask_awaited_twice", &ask_awaited_twice},
+    {"future_after_move", &future_after_move},
+    {"future_left_early", [] { return keep_future(std::chrono::milliseconds(200)); }},
+    {"future_left_late", [] { return keep_future(std::chrono::nanoseconds(0)); }},
+    {"future_given_two", &future_given_two},
     {"derived_in_a_pointer", &draw_circle},
     {"negative_argument", [] { blocks()[{0}].send<&Block::count>(-1); }},
     {"negative_later",
@@ -653,7 +605,7 @@ const std::map<std::string, std::function<void()>> misuses{
     {"exit_-1", [] { tess::exit(-1); }},
     {"exit_256", [] { tess::exit(256); }},
     {"throw_inserted", [] { blocks()[{7}].insert(1); }},
-    {"throw_in_epoch", [] { const tess::Task task = insert_in_epoch(); }},
+    {"throw_in_epoch", &insert_in_epoch},
     {"throw_caught",
      [] {
        try {
@@ -661,7 +613,7 @@ const std::map<std::string, std::function<void()>> misuses{
        } catch (const std::exception&) {
        }
      }},
-    {"map_throws_in_epoch", [] { const tess::Task task = create_in_epoch(); }},
+    {"map_throws_in_epoch", &create_in_epoch},
     {"throw_initial", [] { tess::create<Block>(tess::range(1), 1); }},
     {"check_inserted", [] { blocks()[{7}].insert_on(PeId{0}, 2); }},
     {"place_77", [] { tess::create<Placed<77>>(tess::sparse)[{4}].insert(); }},
@@ -672,42 +624,44 @@ const std::map<std::string, std::function<void()>> misuses{
      }},
     {"section_empty", [] { tess::SectionProxy<Block>().broadcast<&Block::nothing>(); }},
     {"section_empty_ends", [] { tess::SectionProxy<Block>().destroy(); }},
-    {"section_without_element", [] { const tess::Task task = sum_with_a_missing_member(); }},
-    {"section_in_an_epoch", [] { const tess::Task task = section_in_an_epoch(); }},
-    {"section_of_another", [] { const tess::Task task = vote_elsewhere(); }},
+    {"section_without_element", &sum_with_a_missing_member},
+    {"section_in_an_epoch", &section_in_an_epoch},
+    {"section_of_another", &vote_elsewhere},
     {"short_element", &carry<Short>},
     {"long_element", &carry<Long>},
     {"short_argument", &hear<Short>},
     {"long_argument", &hear<Long>},
     {"short_broadcast", &hear_all<Short>},
     {"long_broadcast", &hear_all<Long>},
-    {"short_sum", [] { const tess::Task task = sum_all<Short>(); }},
+    {"short_sum", &sum_all<Short>},
     {"refused_element", &carry<Refused>},
     {"refused_argument", &hear<Refused>},
     {"unclear_argument", &hear<Unclear>},
-    {"unwritten_argument", [] { const tess::Task task = hear_in_epoch<Unwritten>(); }},
+    {"unwritten_argument", &hear_in_epoch<Unwritten>},
     {"unwritten_element", &carry<Unwritten>},
     {"unwritten_broadcast", &hear_all<Unwritten>},
     {"unwritten_and_caught", &hear_and_catch<Unwritten>},
     {"refused_broadcast", &hear_all<Refused>},
-    {"refused_sum", [] { const tess::Task task = sum_all<Refused>(); }},
-    {"long_sum", [] { const tess::Task task = sum_all<Long>(); }},
-    {"sum_of_none", [] { const tess::Task task = sum_of_none(); }},
-    {"sum_of_empty_section", [] { const tess::Task task = sum_of_empty_section(); }},
-    {"mean_of_none", [] { const tess::Task task = mean_of_none<&Meter::give>(); }},
-    {"ordered_mean_of_none", [] { const tess::Task task = mean_of_none<&Meter::give_in_order>(); }},
-    {"section_mean_of_none", [] { const tess::Task task = mean_of_none_in_section(); }},
+    {"refused_sum", &sum_all<Refused>},
+    {"long_sum", &sum_all<Long>},
+    {"sum_of_none",
+     [] { return await_result(tess::create<Block>(tess::sparse).reduce<&Block::give>()); }},
+    {"sum_of_empty_section",
+     [] { return await_result(tess::create_section(blocks(), {}).reduce<&Block::give>()); }},
+    {"mean_of_none", [] { return await_result(meters().reduce<&Meter::give>()); }},
+    {"ordered_mean_of_none", [] { return await_result(meters().reduce<&Meter::give_in_order>()); }},
+    {"section_mean_of_none", &mean_of_none_in_section},
     {"stranger_votes",
      [] {
-       const tess::Task task = votes_of({0, 2, 7});
+       return votes_of({0, 2, 7});
      }},
     {"strangers_vote",
      [] {
-       const tess::Task task = votes_of({7, 8, 9, 0, 2});
+       return votes_of({7, 8, 9, 0, 2});
      }},
-    {"destructor_contributes", [] { const tess::Task task = contribute_at_the_end(); }},
-    {"torn_sum", [] { const tess::Task task = add_and_catch(); }},
-    {"sleep_twice", [] { const tess::Task task = sleep_twice(); }},
+    {"destructor_contributes", &contribute_at_the_end},
+    {"torn_sum", &add_and_catch},
+    {"sleep_twice", &sleep_twice},
     {"work_of_the_past", [] { (void)tess::charge(std::chrono::nanoseconds(-1)); }},
     {"destructor_sends", [] { tess::create<Parting>(tess::range(3)); }},
     {"array_not_known",
@@ -720,12 +674,12 @@ const std::map<std::string, std::function<void()>> misuses{
        const tess::GroupProxy<Member> early(tess::CollectionId{99});
        early.local().nothing();
      }},
-    {"array_after_end", [] { const tess::Task task = use_after_end(); }},
+    {"array_after_end", &use_after_end},
     {"proxy_of_the_past", &send_to_the_past},
     {"run_in_a_run", &run_again},
     {"setup_again", [] {}},
-    {"balance_after_end", [] { const tess::Task task = balance_after_end(); }},
-    {"group_after_end", [] { const tess::Task task = use_member_after_end(); }},
+    {"balance_after_end", &balance_after_end},
+    {"group_after_end", &use_member_after_end},
 };
 
 int misuse(int argc, char** argv) {

@@ -3,9 +3,8 @@
 #include "runtime/checkpoint.hpp"
 #include "runtime/checkpoint/files.hpp"
 #include "runtime/machine/threads.hpp"
+#include "tests/runtime/checkpoint/runs.hpp"
 #include "tests/runtime/checkpoint/world.hpp"
-#include "tests/support/adversarial.hpp"
-#include "tests/support/catch.hpp"
 #include "tests/support/scratch.hpp"
 
 #include <algorithm>
@@ -18,6 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
+using tess::test::has;
 constexpr std::int32_t last_step = 6;
 
 /// From step `first`, with a restart unless it is 0, to step `last`, with a checkpoint after each.
@@ -35,22 +35,15 @@ tess::Task steps(std::string folder, std::int32_t first, std::int32_t last, worl
   }
 }
 
-struct Ended {
-  int exit_code = 0;
-  std::int32_t began = -1;
+struct Ended : tess::test::Ended {
   std::uint64_t log = 0;
-  std::string report;
 };
 
 Ended run(tess::Setup setup, const std::string& folder, std::int32_t first, std::int32_t last) {
-  Ended outcome;
-  setup.options.report = [&outcome](const std::string& line) {
-    if (line.find("not delivered") == std::string::npos) outcome.report += line + "\n";
-  };
   world::State state;
-  outcome.exit_code = tess::run(setup, [&] { return steps(folder, first, last, state); });
-  outcome.log = state.log;
-  return outcome;
+  const auto ended =
+      tess::test::run_on(std::move(setup), [&] { return steps(folder, first, last, state); });
+  return {ended, state.log};
 }
 
 std::uint64_t log_of_whole() {
@@ -69,10 +62,6 @@ void flip_a_bit(const std::string& path, std::size_t at) {
   one = static_cast<char>(one ^ 4);
   std::ofstream(path, std::ios::binary)
       .write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-}
-
-bool says(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
 }
 
 }  // namespace
@@ -110,7 +99,7 @@ TEST_CASE("a run restarts from copies of files that are damaged or lost", "[runt
     CHECK(next.log == log_of_whole());
     CHECK(static_cast<std::size_t>(std::ranges::count(next.report, '\n')) == damaged.size());
     for (const std::string& file : damaged)
-      CHECK(says(next.report, "a file of a checkpoint is refused: " + file + " "));
+      CHECK(has(next.report, "a file of a checkpoint is refused: " + file + " "));
   }
 }
 
@@ -124,8 +113,8 @@ TEST_CASE("a checkpoint whose file and copy are both damaged is refused by name"
     const Ended next = run(tess::test::adversarial(2, 2), folder, 3, last_step);
     CHECK(next.exit_code == 0);
     CHECK(next.log == log_of_whole());
-    CHECK(says(next.report, "a checkpoint is refused: "));
-    CHECK(says(next.report, "; the one before is used: "));
+    CHECK(has(next.report, "a checkpoint is refused: "));
+    CHECK(has(next.report, "; the one before is used: "));
     return next.report;
   };
   const std::string damaged = after([](const std::string& path) {
@@ -133,19 +122,19 @@ TEST_CASE("a checkpoint whose file and copy are both damaged is refused by name"
     flip_a_bit(path + "/pe-1.copy", 91);
   });
   INFO(damaged);
-  CHECK(says(damaged, "/checkpoint-000003/pe-1.copy is damaged"));
+  CHECK(has(damaged, "/checkpoint-000003/pe-1.copy is damaged"));
   const std::string lost = after([](const std::string& path) {
     fs::remove(path + "/pe-2");
     fs::remove(path + "/pe-2.copy");
   });
   INFO(lost);
-  CHECK(says(lost, "/checkpoint-000003/pe-2 is on no host of this run, nor is its copy pe-2.copy"));
+  CHECK(has(lost, "/checkpoint-000003/pe-2 is on no host of this run, nor is its copy pe-2.copy"));
   const std::string half = after([](const std::string& path) {
     fs::remove(path + "/pe-2");
     fs::resize_file(path + "/pe-2.copy", 40);
   });
   INFO(half);
-  CHECK(says(half, "/checkpoint-000003/pe-2.copy has 40 bytes, but the manifest says"));
+  CHECK(has(half, "/checkpoint-000003/pe-2.copy has 40 bytes, but the manifest says"));
 }
 
 namespace {
@@ -195,12 +184,10 @@ TEST_CASE("a checkpoint that cannot be written is removed, and the run goes on",
   const tess::test::Scratch scratch;
   const std::string folder = scratch.path("saved");
   std::string error;
-  auto setup = tess::test::adversarial(3, 5);
-  setup.options.report = [](const std::string& /*line*/) {};
-  CHECK(tess::run(setup, [&] { return Full::main(folder, error); }) == 0);
+  tess::test::completes(3, 5, [&] { return Full::main(folder, error); });
   INFO(error);
-  CHECK(says(error, "the checkpoint failed: " + folder + "/checkpoint-000003/pe-"));
-  CHECK(says(error, "cannot be written: File too large"));
+  CHECK(has(error, "the checkpoint failed: " + folder + "/checkpoint-000003/pe-"));
+  CHECK(has(error, "cannot be written: File too large"));
   // Number 3 was removed and is given again.
   CHECK(tess::detail::numbers_in(folder) == std::vector<std::uint64_t>{3, 2});
   CHECK(run(tess::test::adversarial(2, 2), folder, 3, last_step).log == log_of_whole());
@@ -228,10 +215,8 @@ TEST_CASE("a note that is no UTF-8 is refused, and the run goes on", "[runtime][
   const tess::test::Scratch scratch;
   const std::string folder = scratch.path("saved");
   std::string error;
-  auto setup = tess::test::adversarial(3, 5);
-  setup.options.report = [](const std::string& /*line*/) {};
-  CHECK(tess::run(setup, [&] { return Noted::main(folder, error); }) == 0);
-  CHECK(says(error, "the note of a checkpoint is no text in UTF-8"));
+  tess::test::completes(3, 5, [&] { return Noted::main(folder, error); });
+  CHECK(has(error, "the note of a checkpoint is no text in UTF-8"));
   CHECK(tess::detail::numbers_in(folder) == std::vector<std::uint64_t>{2, 1});
 }
 

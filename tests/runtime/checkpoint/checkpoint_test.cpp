@@ -4,9 +4,8 @@
 #include "runtime/machine/threads.hpp"
 #include "runtime/timer.hpp"
 #include "runtime/when.hpp"
+#include "tests/runtime/checkpoint/runs.hpp"
 #include "tests/runtime/checkpoint/world.hpp"
-#include "tests/support/adversarial.hpp"
-#include "tests/support/catch.hpp"
 #include "tests/support/n_seeds.hpp"
 #include "tests/support/scratch.hpp"
 
@@ -14,13 +13,9 @@ namespace {
 
 constexpr std::int32_t n_steps = 9;
 
-/// It does not print that messages to destroyed words were not delivered.
-tess::Setup quiet_machine(int n_pes, std::uint64_t seed) {
-  auto setup = tess::test::adversarial(n_pes, seed);
-  setup.options.report = [](const std::string& line) {
-    if (line.find("not delivered") == std::string::npos) FAIL_CHECK(line);
-  };
-  return setup;
+/// A run that reports nothing.
+void quiet(int n_pes, std::uint64_t seed, const tess::test::Main& main) {
+  CHECK(tess::test::completes(n_pes, seed, main).empty());
 }
 
 tess::Task run_through(std::uint64_t& log) {
@@ -47,8 +42,7 @@ tess::Task continue_from(std::string folder, std::int32_t step, std::uint64_t& l
 std::uint64_t reference() {
   static const std::uint64_t log = [] {
     std::uint64_t found = 0;
-    auto setup = quiet_machine(3, 1);
-    REQUIRE(tess::run(setup, [&] { return run_through(found); }) == 0);
+    quiet(3, 1, [&] { return run_through(found); });
     return found;
   }();
   return log;
@@ -68,13 +62,10 @@ TEST_CASE("a run that restarts on another number of PEs has the results of one t
     };
     const std::int32_t first = 1 + draw(0, n_steps - 2);
     const std::int32_t second = first + 1 + draw(1, static_cast<std::uint64_t>(n_steps - first));
-    auto setup = quiet_machine(1 + draw(2, 7), seed);
-    REQUIRE(tess::run(setup, [&] { return run_to(folder, first); }) == 0);
+    quiet(1 + draw(2, 7), seed, [&] { return run_to(folder, first); });
     std::uint64_t log = 0;
-    auto next = quiet_machine(1 + draw(3, 7), seed + 1000);
-    REQUIRE(tess::run(next, [&] { return continue_from(folder, second, log); }) == 0);
-    auto last = quiet_machine(1 + draw(4, 7), seed + 2000);
-    REQUIRE(tess::run(last, [&] { return continue_from(folder, n_steps, log); }) == 0);
+    quiet(1 + draw(3, 7), seed + 1000, [&] { return continue_from(folder, second, log); });
+    quiet(1 + draw(4, 7), seed + 2000, [&] { return continue_from(folder, n_steps, log); });
     REQUIRE(log == expected);
   }
 }
@@ -85,7 +76,6 @@ TEST_CASE("a run goes on after a checkpoint as if there had been none", "[runtim
     const tess::test::Scratch scratch;
     const std::string folder = scratch.path("saved");
     std::uint64_t log = 0;
-    auto setup = quiet_machine(4, seed);
     struct Run {
       static tess::Task main(const std::string& in, std::uint64_t& found) {
         world::State state;
@@ -97,26 +87,22 @@ TEST_CASE("a run goes on after a checkpoint as if there had been none", "[runtim
         found = state.log;
       }
     };
-    REQUIRE(tess::run(setup, [&] { return Run::main(folder, log); }) == 0);
+    quiet(4, seed, [&] { return Run::main(folder, log); });
     REQUIRE(log == reference());
   }
 }
 
 TEST_CASE("a run restarts on other threads", "[runtime][checkpoint]") {
   const std::uint64_t expected = reference();
-  const auto threads = [](int n_pes) {
-    tess::Setup setup{tess::make_threads_machine(n_pes), {}};
-    setup.options.report = quiet_machine(1, 1).options.report;
-    return setup;
+  const auto on_threads = [](int n_pes, const tess::test::Main& main) {
+    CHECK(tess::test::completes_on({tess::make_threads_machine(n_pes), {}}, main).empty());
   };
   for (int i = 0; i < 6; ++i) {
     const tess::test::Scratch scratch;
     const std::string folder = scratch.path("saved");
-    auto setup = threads(1 + i % 4);
-    REQUIRE(tess::run(setup, [&] { return run_to(folder, 2 + i); }) == 0);
+    on_threads(1 + i % 4, [&] { return run_to(folder, 2 + i); });
     std::uint64_t log = 0;
-    auto next = threads(4 - i % 3);
-    REQUIRE(tess::run(next, [&] { return continue_from(folder, n_steps, log); }) == 0);
+    on_threads(4 - i % 3, [&] { return continue_from(folder, n_steps, log); });
     CHECK(log == expected);
   }
 }
@@ -228,11 +214,9 @@ TEST_CASE("a checkpoint has the state as it is when the elements are saved",
     INFO("seed " << seed);
     const tess::test::Scratch scratch;
     const std::string folder = scratch.path("saved");
-    auto setup = quiet_machine(3, seed);
-    REQUIRE(tess::run(setup, [&] { return Totals::save_beside_a_step(folder); }) == 0);
+    quiet(3, seed, [&] { return Totals::save_beside_a_step(folder); });
     int total = 0, in_cells = 0;
-    auto next = quiet_machine(2, seed);
-    REQUIRE(tess::run(next, [&] { return Totals::restart(folder, total, in_cells); }) == 0);
+    quiet(2, seed, [&] { return Totals::restart(folder, total, in_cells); });
     CHECK(total == 4);
     CHECK(in_cells == 4);
   }
@@ -242,11 +226,9 @@ TEST_CASE("what constructors make in a restart has no number of the saved run",
           "[runtime][checkpoint]") {
   const tess::test::Scratch scratch;
   const std::string folder = scratch.path("saved");
-  auto setup = quiet_machine(3, 0);
-  REQUIRE(tess::run(setup, [&] { return Made::save(folder); }) == 0);
+  quiet(3, 0, [&] { return Made::save(folder); });
   int sum = 0, n_ticks = 0;
-  auto next = quiet_machine(3, 0);
-  REQUIRE(tess::run(next, [&] { return Made::restart(folder, sum, n_ticks); }) == 0);
+  quiet(3, 0, [&] { return Made::restart(folder, sum, n_ticks); });
   CHECK(sum == 3 * 3 * 2);
   CHECK(n_ticks > 3);
 }

@@ -2,9 +2,8 @@
 // is used.
 #include "runtime/checkpoint.hpp"
 #include "runtime/checkpoint/manifest.hpp"
+#include "tests/runtime/checkpoint/runs.hpp"
 #include "tests/runtime/checkpoint/world.hpp"
-#include "tests/support/adversarial.hpp"
-#include "tests/support/catch.hpp"
 #include "tests/support/scratch.hpp"
 
 #include <fstream>
@@ -12,6 +11,7 @@
 namespace {
 
 namespace fs = std::filesystem;
+using tess::test::has;
 
 tess::Task write_three(std::string folder) {
   world::State state;
@@ -27,26 +27,21 @@ tess::Task read(std::string folder, std::int32_t& step) {
   step = state.step;
 }
 
-struct Outcome {
-  int exit_code = 0;
+struct Outcome : tess::test::Ended {
   std::int32_t step = -1;
-  std::string report;
 };
 
 /// Three steps with a checkpoint after each; the last two checkpoints are kept.
-int write_on(int n_pes, const std::string& folder) {
-  auto setup = tess::test::adversarial(n_pes, 4);
-  setup.options.report = [](const std::string& /*line*/) {};  // of messages to destroyed words
-  return tess::run(setup, [&] { return write_three(folder); });
+void write_on(int n_pes, const std::string& folder) {
+  tess::test::completes(n_pes, 4, [&] { return write_three(folder); });
 }
 
 /// Restarts on two PEs.
 Outcome restart_from(const std::string& folder) {
-  Outcome outcome;
-  auto setup = tess::test::adversarial(2, 5);
-  setup.options.report = [&outcome](const std::string& line) { outcome.report += line + "\n"; };
-  outcome.exit_code = tess::run(setup, [&] { return read(folder, outcome.step); });
-  return outcome;
+  std::int32_t step = -1;
+  const auto ended =
+      tess::test::run_on(tess::test::adversarial(2, 5), [&] { return read(folder, step); });
+  return {ended, step};
 }
 
 void write_bytes(const std::string& path, const std::string& bytes) {
@@ -59,7 +54,7 @@ template <class Damage>
 Outcome after(const Damage& damage) {
   const tess::test::Scratch scratch;
   const std::string folder = scratch.path("saved");
-  REQUIRE(write_on(3, folder) == 0);
+  write_on(3, folder);
   REQUIRE(tess::detail::numbers_in(folder) == std::vector<std::uint64_t>{3, 2});
   damage(tess::detail::folder_of(folder, 3) + "/");
   return restart_from(folder);
@@ -70,9 +65,9 @@ void refused(const Outcome& outcome, const std::string& file, const std::string&
   INFO(outcome.report);
   CHECK(outcome.exit_code == 0);
   CHECK(outcome.step == 2);
-  CHECK(outcome.report.find("checkpoint-000003/" + file) != std::string::npos);
-  CHECK(outcome.report.find(wrong) != std::string::npos);
-  CHECK(outcome.report.find("checkpoint-000002\n") != std::string::npos);
+  CHECK(has(outcome.report, "checkpoint-000003/" + file));
+  CHECK(has(outcome.report, wrong));
+  CHECK(has(outcome.report, "checkpoint-000002\n"));
 }
 
 }  // namespace
@@ -81,6 +76,7 @@ TEST_CASE("a good checkpoint is used without a word", "[runtime][checkpoint]") {
   const Outcome outcome = after([](const std::string& /*path*/) {});
   CHECK(outcome.step == 3);
   CHECK(outcome.report.empty());
+  CHECK(outcome.n_undelivered == 0);
 }
 
 TEST_CASE("a checkpoint with a missing file is refused by name", "[runtime][checkpoint]") {
@@ -116,7 +112,7 @@ TEST_CASE("a checkpoint with one flipped bit anywhere is refused by name",
           "[runtime][checkpoint]") {
   const tess::test::Scratch scratch;
   const std::string folder = scratch.path("saved");
-  REQUIRE(write_on(2, folder) == 0);
+  write_on(2, folder);
   const std::string path = tess::detail::folder_of(folder, 3) + "/";
   for (const char* file : {"pe-0", "main", "manifest.json"}) {
     const std::string good = tess::test::slurp(path + file);
@@ -132,7 +128,7 @@ TEST_CASE("a checkpoint with one flipped bit anywhere is refused by name",
       const Outcome outcome = restart_from(folder);
       INFO(outcome.report);
       CHECK(outcome.step == 2);
-      CHECK(outcome.report.find(std::string("checkpoint-000003/") + file) != std::string::npos);
+      CHECK(has(outcome.report, std::string("checkpoint-000003/") + file));
     }
     write_bytes(path + file, good);
   }
@@ -146,7 +142,7 @@ TEST_CASE("collections that do not fit each other are refused, also if all sums 
   const auto restart_with = [](const auto& change) {
     const tess::test::Scratch scratch;
     const std::string folder = scratch.path("saved");
-    REQUIRE(write_on(3, folder) == 0);
+    write_on(3, folder);
     const std::string path = detail::folder_of(folder, 3);
     detail::Manifest manifest = detail::read_manifest(path);
     const detail::Buffer bytes = detail::read_file(path, manifest.files.back());
@@ -164,11 +160,11 @@ TEST_CASE("collections that do not fit each other are refused, also if all sums 
   const auto other =
       restart_with([](detail::MainPart& main) { main.collections[0].id.value += 64; });
   CHECK(other.exit_code != 0);
-  CHECK(other.report.find("has elements of a collection") != std::string::npos);
+  CHECK(has(other.report, "has elements of a collection"));
   const auto twice =
       restart_with([](detail::MainPart& main) { main.collections[0].id = main.collections[1].id; });
   CHECK(twice.exit_code != 0);
-  CHECK(twice.report.find("twice: restart from another checkpoint") != std::string::npos);
+  CHECK(has(twice.report, "twice: restart from another checkpoint"));
 }
 
 TEST_CASE("a checkpoint of another version is refused by name", "[runtime][checkpoint]") {
@@ -191,14 +187,14 @@ TEST_CASE("a checkpoint that a killed run left unfinished is refused, and remove
           "[runtime][checkpoint]") {
   const tess::test::Scratch scratch;
   const std::string folder = scratch.path("saved");
-  REQUIRE(write_on(3, folder) == 0);
+  write_on(3, folder);
   const std::string partial = tess::detail::folder_of(folder, 4);
   fs::create_directory(partial);
   write_bytes(partial + "/pe-1.part", "half of a fil");
   write_bytes(partial + "/pe-0", "whatever");
   const Outcome outcome = restart_from(folder);
   CHECK(outcome.step == 3);
-  CHECK(outcome.report.find("checkpoint-000004/manifest.json is missing") != std::string::npos);
+  CHECK(has(outcome.report, "checkpoint-000004/manifest.json is missing"));
   struct Next {
     static tess::Task main(const std::string& in) {
       auto state = co_await tess::restart<world::State>(in);
@@ -206,9 +202,7 @@ TEST_CASE("a checkpoint that a killed run left unfinished is refused, and remove
       co_await tess::checkpoint(in, state);
     }
   };
-  auto next = tess::test::adversarial(2, 4);
-  next.options.report = [](const std::string& /*line*/) {};
-  REQUIRE(tess::run(next, [&] { return Next::main(folder); }) == 0);
+  tess::test::completes(2, 4, [&] { return Next::main(folder); });
   CHECK(tess::detail::numbers_in(folder) == std::vector<std::uint64_t>{5, 3});
   CHECK(restart_from(folder).step == 4);
 }
@@ -218,18 +212,18 @@ TEST_CASE("a restart without a good checkpoint is an error that names the folder
   const tess::test::Scratch scratch;
   const Outcome none = restart_from(scratch.path("nothing"));
   CHECK(none.exit_code == 2);
-  CHECK(none.report.find("nothing: no checkpoint is in this folder") != std::string::npos);
+  CHECK(has(none.report, "nothing: no checkpoint is in this folder"));
   fs::create_directories(tess::detail::folder_of(scratch.path("saved"), 1));
   const Outcome bad = restart_from(scratch.path("saved"));
   CHECK(bad.exit_code == 2);
-  CHECK(bad.report.find("there is none before") != std::string::npos);
-  CHECK(bad.report.find("no checkpoint in this folder can be used") != std::string::npos);
+  CHECK(has(bad.report, "there is none before"));
+  CHECK(has(bad.report, "no checkpoint in this folder can be used"));
 }
 
 TEST_CASE("a class that the program has not is named", "[runtime][checkpoint]") {
   const tess::test::Scratch scratch;
   const std::string folder = scratch.path("saved");
-  REQUIRE(write_on(3, folder) == 0);
+  write_on(3, folder);
   // The file "main" as another program would have written it.
   const std::string path = tess::detail::folder_of(folder, 3);
   tess::detail::Manifest manifest = tess::detail::read_manifest(path);
@@ -244,17 +238,15 @@ TEST_CASE("a class that the program has not is named", "[runtime][checkpoint]") 
   main.collections.front().key = "of another program";
   const Outcome unknown = rewrite();
   CHECK(unknown.exit_code == 2);
-  CHECK(unknown.report.find("elements of the class world::Atom, which this program has not") !=
-        std::string::npos);
+  CHECK(has(unknown.report, "elements of the class world::Atom, which this program has not"));
   main.collections.front().key = key;
   manifest.program ^= 1;
   const Outcome other = rewrite();
   CHECK(other.exit_code == 2);
-  CHECK(other.report.find("other classes or entry methods") != std::string::npos);
+  CHECK(has(other.report, "other classes or entry methods"));
   manifest.program ^= 1;
   main.state_type = "Something";
   const Outcome state = rewrite();
   CHECK(state.exit_code == 2);
-  CHECK(state.report.find("a state of type Something, but restart<world::State>()") !=
-        std::string::npos);
+  CHECK(has(state.report, "a state of type Something, but restart<world::State>()"));
 }

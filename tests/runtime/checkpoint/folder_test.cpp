@@ -3,9 +3,8 @@
 #include "runtime/checkpoint.hpp"
 #include "runtime/checkpoint/files.hpp"
 #include "runtime/core/error.hpp"
+#include "tests/runtime/checkpoint/runs.hpp"
 #include "tests/runtime/checkpoint/world.hpp"
-#include "tests/support/adversarial.hpp"
-#include "tests/support/catch.hpp"
 #include "tests/support/scratch.hpp"
 
 #include <algorithm>
@@ -75,10 +74,9 @@ struct Job {
   }
 };
 
-void run(Job& job) {
-  auto setup = tess::test::adversarial(3, 7);
-  setup.options.report = [](const std::string& /*line*/) {};  // of messages to destroyed words
-  REQUIRE(tess::run(setup, [&] { return job.run(); }) == 0);
+Job run(Job job) {
+  tess::test::completes(3, 7, [&] { return job.run(); });
+  return job;
 }
 
 }  // namespace
@@ -87,13 +85,11 @@ TEST_CASE("a run that begins anew writes no checkpoint beside those of another r
           "[runtime][checkpoint]") {
   const tess::test::Scratch scratch;
   const std::string folder = scratch.path("saved");
-  Job first{.from = "", .folder = folder, .n_steps = 2};
-  run(first);
+  const Job first = run({.from = "", .folder = folder, .n_steps = 2});
   CHECK(first.refused.empty());
   CHECK(tess::latest_checkpoint(folder) == tess::detail::folder_of(folder, 2));
 
-  Job anew{.from = "", .folder = folder};
-  run(anew);
+  const Job anew = run({.from = "", .folder = folder});
   CHECK(anew.refused == folder +
                             "/checkpoint-000002 is a checkpoint of another run: restart from " +
                             folder + ", or give another folder");
@@ -102,13 +98,10 @@ TEST_CASE("a run that begins anew writes no checkpoint beside those of another r
   CHECK(fs::exists(folder + "/checkpoint-000001/manifest.json"));
 
   // Nor does one that restarted elsewhere; the folder may be written in any way.
-  Job elsewhere{.from = "", .folder = scratch.path("elsewhere")};
-  run(elsewhere);
-  Job mixed{.from = scratch.path("elsewhere"), .folder = folder};
-  run(mixed);
+  const Job elsewhere = run({.from = "", .folder = scratch.path("elsewhere")});
+  const Job mixed = run({.from = scratch.path("elsewhere"), .folder = folder});
   CHECK_FALSE(mixed.refused.empty());
-  Job same{.from = folder, .folder = scratch.path("elsewhere/../saved/.")};
-  run(same);
+  const Job same = run({.from = folder, .folder = scratch.path("elsewhere/../saved/.")});
   CHECK(same.refused.empty());
   CHECK(tess::detail::numbers_in(folder) == Numbers{3, 2});
 }
@@ -117,20 +110,16 @@ TEST_CASE("a run with two folders goes on with both after a restart from one",
           "[runtime][checkpoint]") {
   const tess::test::Scratch scratch;
   const std::string often = scratch.path("often"), rarely = scratch.path("rarely");
-  Job first{.from = "", .folder = often, .n_steps = 2, .second = rarely};
-  run(first);
-  Job again{.from = often, .folder = often, .n_steps = 2, .second = rarely};
-  run(again);
+  const Job first = run({.from = "", .folder = often, .n_steps = 2, .second = rarely});
+  const Job again = run({.from = often, .folder = often, .n_steps = 2, .second = rarely});
   CHECK(again.refused.empty());
   CHECK(tess::detail::numbers_in(rarely) == Numbers{4, 3});
   std::ofstream(tess::detail::folder_of(rarely, 4) + "/manifest.json") << "{";
-  Job past_damage{.from = often, .folder = often, .second = rarely};
-  run(past_damage);
+  const Job past_damage = run({.from = often, .folder = often, .second = rarely});
   CHECK(past_damage.refused.empty());
   CHECK(tess::latest_checkpoint(rarely) == tess::detail::folder_of(rarely, 5));
 
-  Job other{.from = "", .folder = scratch.path("other"), .second = rarely};
-  run(other);
+  const Job other = run({.from = "", .folder = scratch.path("other"), .second = rarely});
   CHECK(other.refused.find("rarely/checkpoint-000005 is a checkpoint of another run") !=
         std::string::npos);
 }
@@ -139,38 +128,31 @@ TEST_CASE("two runs that restart from one checkpoint write into folders of their
           "[runtime][checkpoint]") {
   const tess::test::Scratch scratch;
   const std::string saved = scratch.path("saved"), beside = scratch.path("beside");
-  Job common{.from = "", .folder = saved, .second = beside};
-  run(common);
-  Job one{.from = saved, .folder = scratch.path("one"), .n_steps = 2};
-  run(one);
+  const Job common = run({.from = "", .folder = saved, .second = beside});
+  const Job one = run({.from = saved, .folder = scratch.path("one"), .n_steps = 2});
   CHECK(one.refused.empty());
-  Job two{.from = saved, .folder = one.folder};
-  run(two);
+  const Job two = run({.from = saved, .folder = one.folder});
   CHECK(two.refused.find("one/checkpoint-000002 is a checkpoint of another run") !=
         std::string::npos);
   CHECK(tess::detail::numbers_in(one.folder) == Numbers{2, 1});
-  Job further{.from = one.folder, .folder = one.folder};
-  run(further);
+  const Job further = run({.from = one.folder, .folder = one.folder});
   CHECK(further.refused.empty());
   CHECK(tess::detail::numbers_in(one.folder) == Numbers{3, 2});
 
   // A folder that the common run began may be gone on with again when a restart was in vain.
   for (const std::uint64_t number : {2U, 3U}) {
-    Job again{.from = saved, .folder = beside};
-    run(again);
+    const Job again = run({.from = saved, .folder = beside});
     CHECK(again.refused.empty());
     CHECK(tess::detail::numbers_in(beside) == Numbers{number, number - 1});
     if (number == 2) continue;
-    Job too_late{.from = saved, .folder = beside};
-    run(too_late);
+    const Job too_late = run({.from = saved, .folder = beside});
     CHECK_FALSE(too_late.refused.empty());  // both that are left are of those restarts
   }
 }
 
 TEST_CASE("a checkpoint that another run writes meanwhile is noticed", "[runtime][checkpoint]") {
   const tess::test::Scratch scratch;
-  Job other{.from = "", .folder = scratch.path("other")};
-  run(other);
+  const Job other = run({.from = "", .folder = scratch.path("other")});
   Job job{.from = "", .folder = scratch.path("saved"), .n_steps = 2};
   job.other = tess::latest_checkpoint(other.folder);
   run(job);
@@ -183,8 +165,7 @@ TEST_CASE("what a killed run left unfinished does not prevent a new run", "[runt
   CHECK(tess::latest_checkpoint(folder).empty());
   fs::create_directories(tess::detail::folder_of(folder, 1));
   CHECK(tess::latest_checkpoint(folder).empty());
-  Job job{.from = "", .folder = folder};
-  run(job);
+  const Job job = run({.from = "", .folder = folder});
   CHECK(job.refused.empty());
   CHECK(tess::detail::numbers_in(folder) == Numbers{2});
 }
@@ -192,12 +173,10 @@ TEST_CASE("what a killed run left unfinished does not prevent a new run", "[runt
 TEST_CASE("a damaged checkpoint is not one of those that are kept", "[runtime][checkpoint]") {
   const tess::test::Scratch scratch;
   const std::string folder = scratch.path("saved");
-  Job job{.from = "", .folder = folder, .n_steps = 3};
-  run(job);
+  const Job job = run({.from = "", .folder = folder, .n_steps = 3});
   CHECK(tess::detail::numbers_in(folder) == Numbers{3, 2});
   fs::resize_file(tess::latest_checkpoint(folder) + "/main", 5);
-  Job next{.from = folder, .folder = folder};
-  run(next);
+  const Job next = run({.from = folder, .folder = folder});
   CHECK(next.step == 3);
   CHECK(tess::detail::numbers_in(folder) == Numbers{4, 2});
 }
@@ -210,8 +189,7 @@ TEST_CASE("each folder that is made for a checkpoint is an entry of a folder tha
     CAPTURE(name);
     const std::string folder = scratch.path(name);
     synced.clear();
-    Job job{.from = "", .folder = folder};
-    run(job);
+    const Job job = run({.from = "", .folder = folder});
     REQUIRE(job.refused.empty());
     fs::path at = fs::canonical(tess::latest_checkpoint(folder));
     CHECK(synced.contains(at / "main.part"));  // its name until it is durable

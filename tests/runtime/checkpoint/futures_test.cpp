@@ -3,8 +3,7 @@
 #include "runtime/machine/threads.hpp"
 #include "runtime/runtime.hpp"
 #include "runtime/when.hpp"
-#include "tests/support/adversarial.hpp"
-#include "tests/support/catch.hpp"
+#include "tests/runtime/checkpoint/runs.hpp"
 #include "tests/support/scratch.hpp"
 
 #include <chrono>
@@ -98,8 +97,7 @@ TEST_CASE("a callback that was saved is an error when it is called after a resta
     INFO("seed " << seed);
     const tess::test::Scratch scratch;
     const std::string folder = scratch.path("saved");
-    auto setup = tess::test::adversarial(3, seed);
-    REQUIRE(tess::run(setup, [&] { return keep(folder, static_cast<int>(seed % 7)); }) == 0);
+    tess::test::completes(3, seed, [&] { return keep(folder, static_cast<int>(seed % 7)); });
     // After one restart, and after one more.
     for (int n = 0; n < 2; ++n) {
       int status = 0;
@@ -113,8 +111,7 @@ TEST_CASE("a callback that was saved is an error when it is called after a resta
       CHECK(status != 0);
       CHECK(errors.find(wanted) != std::string::npos);
       CHECK(errors.find("was given") == std::string::npos);
-      auto again = tess::test::adversarial(2, seed);
-      REQUIRE(tess::run(again, [&] { return save_again(folder); }) == 0);
+      tess::test::completes(2, seed, [&] { return save_again(folder); });
     }
   }
 }

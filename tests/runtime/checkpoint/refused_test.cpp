@@ -5,14 +5,16 @@
 #include "runtime/runtime.hpp"
 #include "runtime/timer.hpp"
 #include "runtime/when.hpp"
-#include "tests/support/adversarial.hpp"
-#include "tests/support/catch.hpp"
+#include "tests/runtime/checkpoint/runs.hpp"
 #include "tests/support/scratch.hpp"
 
 #include <new>
 #include <stdexcept>
 
 namespace {
+
+using tess::test::completes;
+using tess::test::has;
 
 class Cell : public tess::Chare<Cell> {
  public:
@@ -87,18 +89,19 @@ std::string error_after(Prepare prepare) {
   for (std::uint64_t seed = 0; seed < 8; ++seed) {
     const tess::test::Scratch scratch;
     std::string found;
-    auto setup = tess::test::adversarial(3, seed);
-    CHECK(tess::run(setup, [&] { return try_to_save(scratch.path("saved"), prepare, found); }) ==
-          0);
+    completes(3, seed, [&] { return try_to_save(scratch.path("saved"), prepare, found); });
     if (seed == 0) error = found;
     CHECK(found.substr(0, 40) == error.substr(0, 40));
   }
   return error;
 }
 
-bool has(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
+struct Refusal {
+  const char* names;
+  Prepare prepare;
+  std::vector<std::string> sentences;
+  std::vector<std::string> never{};
+};
 
 }  // namespace
 
@@ -108,57 +111,41 @@ TEST_CASE("a checkpoint waits for messages that are under way", "[runtime][check
         }).empty());
 }
 
-TEST_CASE("a checkpoint names the coroutine that waits", "[runtime][checkpoint]") {
-  const std::string error =
-      error_after([](const State& state) { state.cells[{4}].send<&Cell::wait>(state.cells[{1}]); });
-  INFO(error);
-  CHECK(has(error, "no checkpoint can be made here"));
-  CHECK(has(error, "Cell[4]"));
-  CHECK(has(error, "waits for a future of int"));
-  CHECK(!has(error, "the main program"));
-}
-
-TEST_CASE("a checkpoint names the reduction that is not complete", "[runtime][checkpoint]") {
-  const std::string error = error_after([](const State& state) {
-    state.cells[{4}].send<&Cell::sum>(state.cells[{0}].target<&Cell::add>());
-  });
-  INFO(error);
-  CHECK(has(error, "Cell: reduction 0"));
-}
-
-TEST_CASE("a checkpoint names the element that a message waits for", "[runtime][checkpoint]") {
-  const std::string error =
-      error_after([](const State& state) { state.cells[{77}].send<&Cell::add>(1); });
-  INFO(error);
-  CHECK(has(error, "Cell[77], which does not exist"));
-}
-
-TEST_CASE("a checkpoint names the element that waits at its barrier", "[runtime][checkpoint]") {
-  const std::string error =
-      error_after([](const State& state) { state.cells[{2}].send<&Cell::sync>(); });
-  INFO(error);
-  CHECK(has(error, "Cell[2] waits at at_sync()"));
-}
-
-TEST_CASE("a checkpoint names the PE of a timer", "[runtime][checkpoint]") {
-  const std::string error = error_after([](const State& state) {
-    state.cells[{2}].send_after<&Cell::add>(std::chrono::hours(1), 3);
-  });
-  INFO(error);
-  CHECK(has(error, "1 timer is set on PE 0"));
-}
-
-TEST_CASE("a checkpoint names the class that cannot be saved", "[runtime][checkpoint]") {
-  const std::string rock =
-      error_after([](const State& /*state*/) { (void)tess::create<Rock>(tess::range(3), 5); });
-  INFO(rock);
-  CHECK(has(rock, "Rock cannot be saved: give it a default constructor and a public serialize()"));
-  const std::string data = error_after(
-      [](const State& /*state*/) { (void)tess::create_read_only(std::vector<int>(4)); });
-  INFO(data);
-  CHECK(has(data, "ReadOnlyPart"));
-  CHECK(has(data, "the PEs of a process share it: destroy() it before the checkpoint"));
-  CHECK(!has(data, "serialize"));
+TEST_CASE("a checkpoint that is refused names what prevents it", "[runtime][checkpoint]") {
+  const std::vector<Refusal> refusals{
+      {"the coroutine that waits",
+       [](const State& state) { state.cells[{4}].send<&Cell::wait>(state.cells[{1}]); },
+       {"no checkpoint can be made here", "Cell[4]", "waits for a future of int"},
+       {"the main program"}},
+      {"the reduction that is not complete",
+       [](const State& state) {
+         state.cells[{4}].send<&Cell::sum>(state.cells[{0}].target<&Cell::add>());
+       },
+       {"Cell: reduction 0"}},
+      {"the element that a message waits for",
+       [](const State& state) { state.cells[{77}].send<&Cell::add>(1); },
+       {"Cell[77], which does not exist"}},
+      {"the element that waits at its barrier",
+       [](const State& state) { state.cells[{2}].send<&Cell::sync>(); },
+       {"Cell[2] waits at at_sync()"}},
+      {"the PE of a timer",
+       [](const State& state) {
+         state.cells[{2}].send_after<&Cell::add>(std::chrono::hours(1), 3);
+       },
+       {"1 timer is set on PE 0"}},
+      {"the class that cannot be saved",
+       [](const State&) { (void)tess::create<Rock>(tess::range(3), 5); },
+       {"Rock cannot be saved: give it a default constructor and a public serialize()"}},
+      {"data that the PEs of a process share",
+       [](const State&) { (void)tess::create_read_only(std::vector<int>(4)); },
+       {"ReadOnlyPart", "the PEs of a process share it: destroy() it before the checkpoint"},
+       {"serialize"}}};
+  for (const Refusal& refusal : refusals) {
+    const std::string error = error_after(refusal.prepare);
+    INFO(refusal.names << ": " << error);
+    for (const std::string& sentence : refusal.sentences) CHECK(has(error, sentence));
+    for (const std::string& sentence : refusal.never) CHECK_FALSE(has(error, sentence));
+  }
 }
 
 namespace {
@@ -215,15 +202,13 @@ std::string other_members(tess::Task (*save)(std::string), tess::Task (*restart)
   const tess::test::Scratch scratch;
   const std::string folder = scratch.path("saved");
   is_later_version = later_saves;
-  auto before = tess::test::adversarial(3, 1);
-  CHECK(tess::run(before, [&] { return save(folder); }) == 0);
+  completes(3, 1, [&] { return save(folder); });
   is_later_version = !later_saves;
-  std::string report;
-  auto after = tess::test::adversarial(2, 1);
-  after.options.report = [&report](const std::string& line) { report = line; };
-  CHECK(tess::run(after, [&] { return restart(folder); }) == 2);
+  const auto after =
+      tess::test::run_on(tess::test::adversarial(2, 1), [&] { return restart(folder); });
+  CHECK(after.exit_code == 2);
   is_later_version = false;
-  return report;
+  return after.report;
 }
 
 }  // namespace
@@ -233,8 +218,7 @@ TEST_CASE("a checkpoint is refused while another is under way, which goes on",
   const tess::test::Scratch scratch;
   const std::string folder = scratch.path("saved");
   std::string error;
-  auto setup = tess::test::adversarial(3, 1);
-  CHECK(tess::run(setup, [&] { return save_twice_at_once(folder, error); }) == 0);
+  completes(3, 1, [&] { return save_twice_at_once(folder, error); });
   CHECK(has(error, "another checkpoint() is under way; await it first"));
   CHECK(!tess::latest_checkpoint(folder).empty());
 }
@@ -284,14 +268,14 @@ struct Restarting {
     (void)tess::after(std::chrono::hours(1), [] {});
     (void)co_await tess::restart<State>(folder);
   }
+  static tess::Task restart_only(const std::string& folder) {
+    (void)co_await tess::restart<State>(folder);
+  }
   /// Another coroutine of the main program sleeps while all messages are awaited.
   static tess::Task sleep_long() { (void)co_await tess::sleep(std::chrono::hours(1)); }
   static tess::Task restart_beside_sleep(const std::string& folder) {
-    const auto restart = [](const std::string& of) -> tess::Task {
-      (void)co_await tess::restart<State>(of);
-    };
     std::vector<tess::Task> both;
-    both.push_back(restart(folder));
+    both.push_back(restart_only(folder));
     both.push_back(sleep_long());
     co_await tess::when_all(std::move(both));
   }
@@ -307,42 +291,38 @@ TEST_CASE("a group restarts on the same number of PEs, or its class says how",
           "[runtime][checkpoint]") {
   const tess::test::Scratch scratch;
   const std::string folder = scratch.path("saved");
-  auto setup = tess::test::adversarial(3, 1);
-  REQUIRE(tess::run(setup, [&] { return Restarting::save(folder); }) == 0);
+  completes(3, 1, [&] { return Restarting::save(folder); });
   int sum = 0;
-  auto same = tess::test::adversarial(3, 2);
-  CHECK(tess::run(same, [&] { return Restarting::restart(folder, sum); }) == 0);
+  completes(3, 2, [&] { return Restarting::restart(folder, sum); });
   CHECK(sum == 21);
-  std::string report;
-  for (const int n_pes : {2, 4}) {
-    auto other = tess::test::adversarial(n_pes, 3);
-    other.options.report = [&report](const std::string& line) { report = line; };
-    CHECK(tess::run(other, [&] { return Restarting::restart(folder, sum); }) == 2);
-    INFO(report);
-    CHECK(has(report, "Table"));
-    CHECK(has(report, "has 3 members, but this run has"));
-    CHECK(has(report, "absorb("));
+  const auto restart = [&](const std::string& of) { return Restarting::restart(of, sum); };
+  const struct {
+    int n_pes;
+    std::function<tess::Task(const std::string&)> main;
+    std::vector<std::string> sentences;
+  } refusals[]{
+      {2, restart, {"Table", "has 3 members, but this run has", "absorb("}},
+      {4, restart, {"Table", "has 3 members, but this run has", "absorb("}},
+      {3, &Restarting::restart_late, {"restart() comes first, but this run has already made Cell"}},
+      {3,
+       &Restarting::restart_with_future,
+       {"restart() comes first, but this run has already made a future"}},
+      {3,
+       &Restarting::restart_after_an_array,
+       {"already made an array, group or section that has ended"}},
+      {3,
+       &Restarting::restart_with_timer,
+       {"restart() comes first, but this run has already set a timer"}},
+      {3,
+       &Restarting::restart_beside_sleep,
+       {"restart() waits for all messages, but 1 timer is set on PE 0"}}};
+  for (const auto& refusal : refusals) {
+    const auto ended = tess::test::run_on(tess::test::adversarial(refusal.n_pes, 3),
+                                          [&] { return refusal.main(folder); });
+    INFO(ended.report);
+    CHECK(ended.exit_code == 2);
+    for (const std::string& sentence : refusal.sentences) CHECK(has(ended.report, sentence));
   }
-  auto late = tess::test::adversarial(3, 3);
-  late.options.report = [&report](const std::string& line) { report = line; };
-  CHECK(tess::run(late, [&] { return Restarting::restart_late(folder); }) == 2);
-  CHECK(has(report, "restart() comes first, but this run has already made Cell"));
-  auto future = tess::test::adversarial(3, 3);
-  future.options.report = [&report](const std::string& line) { report = line; };
-  CHECK(tess::run(future, [&] { return Restarting::restart_with_future(folder); }) == 2);
-  CHECK(has(report, "restart() comes first, but this run has already made a future"));
-  auto array = tess::test::adversarial(3, 3);
-  array.options.report = [&report](const std::string& line) { report = line; };
-  CHECK(tess::run(array, [&] { return Restarting::restart_after_an_array(folder); }) == 2);
-  CHECK(has(report, "already made an array, group or section that has ended"));
-  auto timer = tess::test::adversarial(3, 3);
-  timer.options.report = [&report](const std::string& line) { report = line; };
-  CHECK(tess::run(timer, [&] { return Restarting::restart_with_timer(folder); }) == 2);
-  CHECK(has(report, "restart() comes first, but this run has already set a timer"));
-  auto sleep = tess::test::adversarial(3, 3);
-  sleep.options.report = [&report](const std::string& line) { report = line; };
-  CHECK(tess::run(sleep, [&] { return Restarting::restart_beside_sleep(folder); }) == 2);
-  CHECK(has(report, "restart() waits for all messages, but 1 timer is set on PE 0"));
 }
 
 namespace {
@@ -397,11 +377,9 @@ TEST_CASE("an array that is balanced restarts with a new balancer", "[runtime][c
     INFO("seed " << seed);
     const tess::test::Scratch scratch;
     int sum = 0;
-    auto setup = tess::test::adversarial(3, seed);
-    REQUIRE(tess::run(setup, [&] { return Balanced::save(scratch.path("saved"), sum); }) == 0);
+    completes(3, seed, [&] { return Balanced::save(scratch.path("saved"), sum); });
     CHECK(sum == 27);
-    auto other = tess::test::adversarial(5, seed);
-    REQUIRE(tess::run(other, [&] { return Balanced::restart(scratch.path("saved"), sum); }) == 0);
+    completes(5, seed, [&] { return Balanced::restart(scratch.path("saved"), sum); });
     CHECK(sum == 45);
   }
 }
@@ -487,15 +465,15 @@ TEST_CASE("an exception of serialize() is the Error of the checkpoint, and the r
     std::vector<std::string> errors;
     auto setup = tess::test::adversarial(3, seed);
     setup.options.migration_chance = 0;  // a migration would throw, too
-    REQUIRE(tess::run(setup, [&] { return Pottery::main(scratch.path("saved"), errors); }) == 0);
-    REQUIRE(errors.size() == 8);
-    CHECK(errors[0] == "the checkpoint failed: Clay[3]: the clay is too hard");
-    CHECK(errors[1] == "the checkpoint failed: Clay[3]: the clay is too soft");
-    CHECK(errors[2] == "the checkpoint failed: Clay[3]: std::bad_alloc");
-    CHECK(errors[3] == "the checkpoint failed: an exception that is not a std::exception");
-    CHECK(errors[4] == "the clay is too hard");
-    CHECK(errors[5] == scratch.path("saved: the clay is too soft"));
-    CHECK(errors[6] == scratch.path("saved: std::bad_alloc"));
-    CHECK(errors[7] == scratch.path("saved: an exception that is not a std::exception"));
+    tess::test::completes_on(std::move(setup),
+                             [&] { return Pottery::main(scratch.path("saved"), errors); });
+    CHECK(errors == std::vector<std::string>{
+                        "the checkpoint failed: Clay[3]: the clay is too hard",
+                        "the checkpoint failed: Clay[3]: the clay is too soft",
+                        "the checkpoint failed: Clay[3]: std::bad_alloc",
+                        "the checkpoint failed: an exception that is not a std::exception",
+                        "the clay is too hard", scratch.path("saved: the clay is too soft"),
+                        scratch.path("saved: std::bad_alloc"),
+                        scratch.path("saved: an exception that is not a std::exception")});
   }
 }

@@ -3,8 +3,7 @@
 #include "runtime/checkpoint.hpp"
 #include "runtime/runtime.hpp"
 #include "runtime/when.hpp"
-#include "tests/support/adversarial.hpp"
-#include "tests/support/catch.hpp"
+#include "tests/runtime/checkpoint/runs.hpp"
 #include "tests/support/scratch.hpp"
 
 #include <chrono>
@@ -16,6 +15,7 @@
 namespace {
 
 using namespace std::chrono_literals;
+using tess::test::completes;
 
 class Leaf : public tess::Chare<Leaf> {
  public:
@@ -114,12 +114,6 @@ tess::Task time(std::string folder) {
   CHECK(*n_runs == 20);
 }
 
-void run(const std::function<tess::Task()>& main, std::uint64_t seed, int n_pes) {
-  CAPTURE(seed, n_pes);
-  tess::Setup setup = tess::test::adversarial(n_pes, seed);
-  CHECK(tess::run(setup, main) == 0);
-}
-
 }  // namespace
 
 TEST_CASE("arrays and sections have new numbers after restarts on fewer and on more PEs",
@@ -128,9 +122,9 @@ TEST_CASE("arrays and sections have new numbers after restarts on fewer and on m
     for (const int fewer : {1, 2, 4}) {
       const tess::test::Scratch scratch;
       const std::string folder = scratch.path("saved");
-      run([&] { return begin(folder); }, seed, 4);
-      run([&] { return go_on(folder); }, seed, fewer);
-      for (const int n_pes : {fewer, 3, 4}) run([&] { return use(folder); }, seed, n_pes);
+      completes(4, seed, [&] { return begin(folder); });
+      completes(fewer, seed, [&] { return go_on(folder); });
+      for (const int n_pes : {fewer, 3, 4}) completes(n_pes, seed, [&] { return use(folder); });
     }
 }
 
@@ -139,8 +133,8 @@ TEST_CASE("timers tick after a restart, and one of the run before names none of 
   for (const int n_pes : {1, 4}) {
     const tess::test::Scratch scratch;
     const std::string folder = scratch.path("saved");
-    run([&] { return begin(folder); }, 1, 4);
-    run([&] { return time(folder); }, 2, n_pes);
+    completes(4, 1, [&] { return begin(folder); });
+    completes(n_pes, 2, [&] { return time(folder); });
   }
 }
 
@@ -198,7 +192,7 @@ std::vector<int> places_on(int n_pes, std::uint64_t seed,
   std::vector<int> places;
   tess::Setup setup = tess::test::adversarial(n_pes, seed);
   setup.options.migration_chance = 0;
-  CHECK(tess::run(setup, [&] { return main(places); }) == 0);
+  tess::test::completes_on(std::move(setup), [&] { return main(places); });
   return places;
 }
 

@@ -3,8 +3,7 @@
 #include "runtime/checkpoint.hpp"
 #include "runtime/runtime.hpp"
 #include "runtime/when.hpp"
-#include "tests/support/adversarial.hpp"
-#include "tests/support/catch.hpp"
+#include "tests/runtime/checkpoint/runs.hpp"
 #include "tests/support/scratch.hpp"
 
 #include <utility>
@@ -97,12 +96,6 @@ tess::Task go_on(std::string folder, int ends) {
   co_await tess::checkpoint(folder, state);
 }
 
-void run(const std::function<tess::Task()>& main, std::uint64_t seed, int n_pes) {
-  CAPTURE(seed, n_pes);
-  tess::Setup setup = tess::test::adversarial(n_pes, seed);
-  REQUIRE(tess::run(setup, main) == 0);
-}
-
 }  // namespace
 
 TEST_CASE("a section has the same members over restarts, whatever ends and begins between",
@@ -110,9 +103,9 @@ TEST_CASE("a section has the same members over restarts, whatever ends and begin
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
     const tess::test::Scratch scratch;
     const std::string folder = scratch.path("saved");
-    run([&] { return begin(folder); }, seed, 4);
-    run([&] { return go_on(folder, 4); }, seed, 1 + static_cast<int>(seed % 3));
-    run([&] { return go_on(folder, 2); }, seed, 5);
+    tess::test::completes(4, seed, [&] { return begin(folder); });
+    tess::test::completes(1 + static_cast<int>(seed % 3), seed, [&] { return go_on(folder, 4); });
+    tess::test::completes(5, seed, [&] { return go_on(folder, 2); });
   }
 }
 
