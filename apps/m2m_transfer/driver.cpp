@@ -227,8 +227,8 @@ int run_pes_study(const Options& options, const tess::Setup& setup, const char* 
                   kit::Driver& driver) {
   if (setup.machine->n_processes() != 1 || setup.machine->virtual_time())
     fail(ErrorCode::bad_argument,
-         "--study pes simulates its machines; leave out mpirun and --sim (--pes-of-study and "
-         "--sim-of-study describe them)");
+         "--study pes simulates its machines; leave out mpirun and --sim (--machines and "
+         "--network describe them)");
   Request request = options.request;
   request.repeat = options.repeat.value_or(3);
   const std::vector<SimulatedOptions> machines = machines_of(options.pes, options.sim);
@@ -242,11 +242,12 @@ int run_pes_study(const Options& options, const tess::Setup& setup, const char* 
     PesRow row;
     if (const int code = measure(program, request, setup.options, machine, row); code != 0)
       return code;
+    const PesRow& first = rows.empty() ? row : rows.front();
+    row.speed_up = first.together() / row.together();
+    row.efficiency = row.speed_up * first.pes / row.pes;
     rows.push_back(row);
-    const PesRow& first = rows.front();
-    rows.back().speedup = first.together() * first.pes / row.together();
     driver.progress().clear();
-    print(pes_rows().line(rows.back()));
+    print(pes_rows().line(row));
   }
   write(driver, options.plot,
         {"pes", pes_rows().csv(rows), {picture_of(rows, request.source + " to " + request.target)}},

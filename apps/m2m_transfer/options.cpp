@@ -140,10 +140,10 @@ void add_studies(kit::Driver& driver, Options& options) {
   driver.enters("--study", Mode::steps, "steps");
   driver.enters("--study", Mode::pes, "pes");
   driver.in(Mode::pes);
-  driver.option("--pes-of-study N,N,…", options.pes, "PEs of the machines of --study pes")
+  driver.option("--machines N,N,…", options.pes, "PEs of the machines of --study pes")
       .separated_by(',')
       .between(1, 1 << 20);
-  driver.option("--sim-of-study KEYS", options.sim, "what else --sim would say of these machines");
+  driver.option("--network KEYS", options.sim, "what else --sim would say of these machines");
   driver.in(Mode::round_trips);
   driver.option("--round-trips N,N,…", options.round_trips,
                 "SOURCE to TARGET and back with one pair of handles, and the drift after so many "

@@ -204,19 +204,19 @@ refuses "^collide_scene: error: INPUT crowd:2048 does not work with --stability"
 refuses "^particles: error: --steps 5 does not work with --stability" "$bin/particles" --stability --steps 5
 refuses "^collide_scene: error: voxel grid: coordinate" "$bin/collide_scene" boxes:100 --pes 2 --voxel-size 1e-30
 
-scaling=("$bin/m2m_transfer" --study pes --repeat 1 --pes-of-study)
+scaling=("$bin/m2m_transfer" --study pes --repeat 1 --machines)
 refuses "missing.exo: cannot be opened" "${scaling[@]}" 1 "$scratch/missing.exo" kuhn:2
 refuses "nan.msh: vertex" "${scaling[@]}" 1 kuhn:2 "$scratch/nan.msh"
 refuses "--kind all does not work with --study pes" "${scaling[@]}" 1 kuhn:2 kuhn:2 --kind all
-refuses "--sim-of-study pes=3 names a number of PEs" "${scaling[@]}" 1 kuhn:2 kuhn:2 --sim-of-study pes=3
-refuses "--sim: 3 PEs do not divide into processes of 2" "${scaling[@]}" 4,3 kuhn:2 kuhn:3 --sim-of-study per-process=2
+refuses "--network pes=3 names a number of PEs" "${scaling[@]}" 1 kuhn:2 kuhn:2 --network pes=3
+refuses "--sim: 3 PEs do not divide into processes of 2" "${scaling[@]}" 4,3 kuhn:2 kuhn:3 --network per-process=2
 refuses "--study pes simulates its machines" "${scaling[@]}" 1 kuhn:2 kuhn:3 --sim pes=2
-refuses "--pes-of-study: needs --study pes" "${alone[@]}" --pes-of-study 1,2
-refuses "--pes-of-study 1,2 does not work with --study" "${alone[@]}" --study h --pes-of-study 1,2
-# Each machine is the one of --sim-of-study, and has its forced migrations.
-"${scaling[@]}" 1,2,6 kuhn:2 kuhn:3 --sim-of-study per-process=2 >"$scratch/out" && pass || fail "--study pes refuses per-process=2"
+refuses "--machines: needs --study pes" "${alone[@]}" --machines 1,2
+refuses "--machines 1,2 does not work with --study" "${alone[@]}" --study h --machines 1,2
+# Each machine is the one of --network, and has its forced migrations.
+"${scaling[@]}" 1,2,6 kuhn:2 kuhn:3 --network per-process=2 >"$scratch/out" && pass || fail "--study pes refuses per-process=2"
 for chance in 0 0.5; do
-  "${scaling[@]}" 2 kuhn:2 kuhn:3 --sim-of-study seed=3,cost=1ms,migrate=$chance >"$scratch/out" && tail -n 1 "$scratch/out" >"$scratch/migrate.$chance" && pass || fail "--study pes, migrate=$chance"
+  "${scaling[@]}" 2 kuhn:2 kuhn:3 --network seed=3,cost=1ms,migrate=$chance >"$scratch/out" && tail -n 1 "$scratch/out" >"$scratch/migrate.$chance" && pass || fail "--study pes, migrate=$chance"
 done
 ! cmp -s "$scratch/migrate.0" "$scratch/migrate.0.5" && pass || fail "--study pes migrates nothing"
 refuses "empty.exo" "${scaling[@]}" 1 kuhn:2 kuhn:2 --plot "$scratch/empty.exo"

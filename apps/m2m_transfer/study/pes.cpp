@@ -76,8 +76,8 @@ const kit::Rows<PesRow>& pes_rows() {
       {"narrow_seconds", "narrow", "8.4f", [](R r) -> Json { return r.seconds.narrow; }},
       {"apply_seconds", "apply", "8.4f", [](R r) -> Json { return r.seconds.apply; }},
       {"seconds", "together", "8.4f", [](R r) -> Json { return r.together(); }},
-      {"speedup", "speed-up", "8.2f", of<&PesRow::speedup>},
-      {"efficiency", "efficiency", "10.2f", [](R r) -> Json { return r.speedup / r.pes; }},
+      {"speed_up", "speed-up", "8.2f", of<&PesRow::speed_up>},
+      {"efficiency", "efficiency", "10.2f", of<&PesRow::efficiency>},
       {"gather_seconds", "gather", "8.4f", [](R r) -> Json { return r.seconds.gather; }},
       {"result_hash", "result", "16", [](R r) -> Json { return kit::hex(r.result_hash); }}};
   static const kit::Rows<PesRow> rows(columns);
@@ -104,8 +104,8 @@ Picture picture_of(const std::vector<PesRow>& rows, const std::string& title) {
 
 std::vector<SimulatedOptions> machines_of(std::vector<std::int32_t> pes, const std::string& keys) {
   if (keys.starts_with("pes=") || keys.find(",pes=") != std::string::npos)
-    fail(ErrorCode::bad_argument, "--sim-of-study ", keys,
-         " names a number of PEs; give them with --pes-of-study 1,4,16");
+    fail(ErrorCode::bad_argument, "--network ", keys,
+         " names a number of PEs; give them with --machines 1,4,16");
   std::ranges::sort(pes);
   std::vector<SimulatedOptions> machines;
   for (const std::int32_t n : pes)

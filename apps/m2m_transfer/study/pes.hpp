@@ -20,7 +20,7 @@ struct PesRow {
   PhaseSeconds seconds{};
   Tally tally{};
   std::uint64_t result_hash = 0;
-  double speedup = 0;  ///< against the machine with the fewest PEs, times its PEs
+  double speed_up = 0, efficiency = 0;  ///< against the machine with the fewest PEs
 
   /// Set-up, search and one application: the values are at the pieces of the target.
   [[nodiscard]] double together() const { return seconds.setup + seconds.transfer(); }

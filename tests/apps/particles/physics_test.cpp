@@ -140,9 +140,8 @@ TEST_CASE("particles that go through a surface are counted, each once", "[partic
   scene.emitters[0].velocity = {};
   const Ran begun = run_scene(scene, "--pes=2");
   CHECK(begun.last().tunnelled == 0);
-  CHECK(table(scene, begun.result, {}).find("200 of 200 particles begin below a surface") !=
-        std::string::npos);
-  CHECK(table(scene, last_step.result, {}).find("begin below") == std::string::npos);
+  CHECK(begun.table.find("200 of 200 particles begin below a surface") != std::string::npos);
+  CHECK(last_step.table.find("begin below") == std::string::npos);
 }
 
 TEST_CASE("particles that a spinning body meets and takes along have not gone through it",

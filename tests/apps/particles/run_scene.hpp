@@ -2,6 +2,7 @@
 // particles, without blocks or messages: the oracle.
 #pragma once
 
+#include "apps/particles/output/report.hpp"
 #include "apps/particles/simulation/observe.hpp"
 #include "apps/particles/simulation/simulate.hpp"
 #include "runtime/runtime.hpp"
@@ -16,6 +17,7 @@ namespace particles {
 struct Ran {
   std::shared_ptr<Stage> stage;
   RunResult result;
+  std::string table{};  ///< as the program prints it
   [[nodiscard]] const Measured& last() const { return result.rows.back().measured; }
 };
 
@@ -26,7 +28,10 @@ inline Ran run_scene(Scene scene, const std::string& option, const RunOptions& h
   int argc = 2;
   tess::Setup setup = tess::take_options(argc, argv.data());
   Ran ran{std::make_shared<Stage>(std::move(scene)), {}};
-  const auto main = [&]() -> tess::Task { return simulate(ran.stage, ran.result, how); };
+  const auto main = [&]() -> tess::Task {
+    co_await simulate(ran.stage, ran.result, how);
+    ran.table = table(report(ran.stage->scene, ran.result, how), ran.result);
+  };
   REQUIRE(tess::run(setup, main) == 0);
   return ran;
 }
