@@ -229,7 +229,7 @@ int start(tess::Setup& setup, int argc, char** argv, bool on_chares) {
   driver.flag("--serial", options.serial, "one thread, without the runtime (the default)");
   driver.explain();
   driver.in(pes);
-  driver.option("--pes-of-study N,N,…", ladder.pes, "PEs of the machines of --study pes")
+  driver.option("--machines N,N,…", ladder.pes, "PEs of the machines of --study pes")
       .separated_by(',')
       .between(1, 1 << 20);
   driver.flag("--weak", ladder.is_weak, "the N of each scene NAME:N is that of one PE");
@@ -241,7 +241,7 @@ int start(tess::Setup& setup, int argc, char** argv, bool on_chares) {
               "search, pair, reply, copy, record")
       .separated_by(',')
       .takes(6, 6);
-  driver.option("--sim-of-study KEYS", ladder.sim, "what else --sim would say of these machines");
+  driver.option("--network KEYS", ladder.network, "what else --sim would say of these machines");
   driver.stability("extreme scenes against brute force");
   if (!driver.parse(argc, argv, scenes_help() + tess::options_help())) return 0;
   if (self) options.rules.within_model = tess::collide::WithinModel::test;

@@ -26,7 +26,7 @@ struct Ladder {
   /// Nanoseconds of an item, in the order of tess::collide::SimulatedCosts.
   std::vector<double> costs{9.12, 13.14, 0.22, 0, 12.17, 42.68};
   /// What else --sim would say of the machines.
-  std::string sim = "cost=580ns,latency=2us,bandwidth=4.2GB/s,per-process=1";
+  std::string network = "cost=580ns,latency=2us,bandwidth=4.2GB/s,per-process=1";
 };
 
 struct Options {

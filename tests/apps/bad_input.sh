@@ -189,14 +189,14 @@ refuses "--by: needs a --heat map" "$bin/tess_monitor" --by pe
 refuses "--level '': give single or funneled" "$bin/embedded" --level
 refuses "--level 'double'" "$bin/embedded" --pes 1 --level double
 
-crowd=("$bin/collide_scene" crowd:2048 --study pes --pes-of-study 1)
+crowd=("$bin/collide_scene" crowd:2048 --study pes --machines 1)
 refuses "no balance strategy 'gredy'" "${crowd[@]}" --balance gredy
 refuses "--steps 5: greedy_refine balances after every 5 steps" "${crowd[@]}" --steps 5 --balance greedy_refine
-refuses "--pes-of-study: Value 0 not in range" "$bin/collide_scene" crowd:2048 --study pes --pes-of-study 1,0
-refuses "3 PEs do not divide into processes of 2" "$bin/collide_scene" crowd:2048 --study pes --pes-of-study 4,3 --sim-of-study per-process=2
-refuses "--sim-of-study pes=3 names a number of PEs" "${crowd[@]}" --sim-of-study pes=3
+refuses "--machines: Value 0 not in range" "$bin/collide_scene" crowd:2048 --study pes --machines 1,0
+refuses "3 PEs do not divide into processes of 2" "$bin/collide_scene" crowd:2048 --study pes --machines 4,3 --network per-process=2
+refuses "--network pes=3 names a number of PEs" "${crowd[@]}" --network pes=3
 refuses "--weak: .*box.msh is no scene made by rule" "$bin/collide_scene" "$scratch/box.msh" --study pes --weak
-refuses "--pes-of-study: needs --study pes" "$bin/collide_scene" crowd:2048 --pes-of-study 1
+refuses "--machines: needs --study pes" "$bin/collide_scene" crowd:2048 --machines 1
 refuses "--balance none does not work with --study voxels" "$bin/collide_scene" crowd:2048 --study voxels --balance none
 refuses "--triangles does not work with --study pes" "${crowd[@]}" --triangles
 refuses "--stability: needs no PEs" "$bin/collide_scene" --stability --pes 2

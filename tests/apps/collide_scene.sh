@@ -94,7 +94,7 @@ for file in planes_study.csv planes_study_time.csv planes_study_error.csv; do
 done
 [[ $(wc -l <"$scratch/out/planes_study.csv") == 17 ]]
 check "the study has 16 rows" $?
-"$scene" crowd:8192 --study pes --pes-of-study 1,20 --steps 11 --balance none,greedy_refine --out "$scratch/out/crowd" >"$scratch/table" &&
+"$scene" crowd:8192 --study pes --machines 1,20 --steps 11 --balance none,greedy_refine --out "$scratch/out/crowd" >"$scratch/table" &&
   [[ $(wc -l <"$scratch/table") == 5 ]]
 check "--study pes" $?
 for name in none greedy_refine; do

@@ -148,9 +148,9 @@ PesRow measure(const Case& given, const tess::SimulatedOptions& machine,
 
 /// The machine of one PE has one process.
 tess::SimulatedOptions machine_of(const Ladder& ladder, std::int32_t n_pes) {
-  tess::SimulatedOptions machine =
-      tess::parse_simulated(fmt::format("{}{}pes={}{}", ladder.sim, ladder.sim.empty() ? "" : ",",
-                                        n_pes, n_pes == 1 ? ",per-process=1" : ""));
+  tess::SimulatedOptions machine = tess::parse_simulated(
+      fmt::format("{}{}pes={}{}", ladder.network, ladder.network.empty() ? "" : ",", n_pes,
+                  n_pes == 1 ? ",per-process=1" : ""));
   machine.watches_cost = false;  // the work of this program is left out
   return machine;
 }
@@ -181,9 +181,9 @@ void check_ladder(const Options& options) {
     if (ladder.is_weak && find_scene_kind(input) == nullptr)
       fail(ErrorCode::bad_argument, "--weak: ", input,
            " is no scene made by rule; give scenes such as planes:65536, or leave it out");
-  if (ladder.sim.starts_with("pes=") || ladder.sim.find(",pes=") != std::string::npos)
-    fail(ErrorCode::bad_argument, "--sim-of-study ", ladder.sim,
-         " names a number of PEs; give them with --pes-of-study 1,4,16");
+  if (ladder.network.starts_with("pes=") || ladder.network.find(",pes=") != std::string::npos)
+    fail(ErrorCode::bad_argument, "--network ", ladder.network,
+         " names a number of PEs; give them with --machines 1,4,16");
   for (const std::int32_t n : ladder.pes) (void)machine_of(ladder, n);
   for (const std::string& balance : ladder.balance) {
     if (balance == "none") continue;

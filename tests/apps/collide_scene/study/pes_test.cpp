@@ -61,6 +61,5 @@ TEST_CASE("ladders that cannot be climbed are refused", "[apps][collide_scene]")
   };
   CHECK(refusal({.inputs = {"a.obj"}, .ladder = {.is_weak = true}}).starts_with("--weak: a.obj"));
   CHECK(refusal({.steps = 5, .ladder = {.balance = {"greedy"}}}).starts_with("--steps 5: greedy"));
-  CHECK(
-      refusal({.ladder = {.sim = "cost=1us,pes=3"}}).starts_with("--sim-of-study cost=1us,pes=3"));
+  CHECK(refusal({.ladder = {.network = "cost=1us,pes=3"}}).starts_with("--network cost=1us,pes=3"));
 }
