@@ -21,7 +21,7 @@ namespace collide_scene {
 namespace {
 
 using kit::Mode;
-constexpr kit::Modes voxels = Mode::own(0), pes = Mode::own(1);
+constexpr kit::Modes voxels = Mode::study, pes = Mode::own(0);
 
 /// Used on process 0 only.
 struct Problem {
@@ -188,7 +188,7 @@ int start(tess::Setup& setup, int argc, char** argv, bool on_chares) {
       setup,
       "Finds the objects of a scene that collide. In one thread; with --pes, --sim or under mpirun "
       "on chares.");
-  driver.in(Mode::run | Mode::study | voxels | pes);
+  driver.in(Mode::run | voxels | pes);
   driver.option("INPUT", options.inputs,
                 "files of triangles (.obj, .ply, .stl), each a model, or scenes NAME:N (below)");
   driver
@@ -209,9 +209,10 @@ int start(tess::Setup& setup, int argc, char** argv, bool on_chares) {
               "voxels: voxel sizes, boxes and exact triangles: time against candidates and false "
               "positives; pes: simulated machines of more and more PEs: speed-up")
       .one_of({"voxels", "pes"});
-  driver.enters("--study", Mode::study);
+  driver.enters("--study", voxels, "voxels");
+  driver.enters("--study", pes, "pes");
   driver.json();
-  driver.in(Mode::run | Mode::study | pes);
+  driver.in(Mode::run | pes);
   driver
       .option("--voxel-size", options.rules.voxel_size,
               "edge of a voxel (default: chosen from the objects)")
@@ -227,8 +228,8 @@ int start(tess::Setup& setup, int argc, char** argv, bool on_chares) {
   driver.repeat(options.repeat, "collisions per step; the fastest counts");
   driver.flag("--serial", options.serial, "one thread, without the runtime (the default)");
   driver.explain();
-  driver.in(Mode::study | pes);
-  driver.option("--machines N,N,…", ladder.pes, "PEs of each machine of the study")
+  driver.in(pes);
+  driver.option("--machines N,N,…", ladder.pes, "PEs of the machines of --study pes")
       .separated_by(',')
       .between(1, 1 << 20);
   driver.flag("--weak", ladder.is_weak, "the N of each scene NAME:N is that of one PE");
@@ -240,18 +241,16 @@ int start(tess::Setup& setup, int argc, char** argv, bool on_chares) {
               "search, pair, reply, copy, record")
       .separated_by(',')
       .takes(6, 6);
-  driver.option("--network KEYS", ladder.network, "the simulated machines, as for --sim");
+  driver.option("--network KEYS", ladder.network, "what else --sim would say of these machines");
   driver.stability("extreme scenes against brute force");
   if (!driver.parse(argc, argv, scenes_help() + tess::options_help())) return 0;
   if (self) options.rules.within_model = tess::collide::WithinModel::test;
-  std::string what = options.serial ? "--serial" : "--stability";
-  if (driver.mode() == Mode::study) {
-    what = "--study " + study;
-    driver.enter(study == "pes" ? pes : voxels, what);
-  }
   driver.refuse_both("--repeat", "--slack");
   if (on_chares && (options.serial || driver.mode() != Mode::run))
-    tess::fail(tess::ErrorCode::bad_argument, what,
+    tess::fail(tess::ErrorCode::bad_argument,
+               options.serial                     ? "--serial"
+               : driver.mode() == Mode::stability ? "--stability"
+                                                  : "--study " + study,
                ": needs no PEs of this run; leave it out, or --pes, --sim and mpirun");
   if (options.rules.slack > 0 && !on_chares)
     tess::fail(tess::ErrorCode::bad_argument, "--slack: is for chares; add --pes, or leave it out");

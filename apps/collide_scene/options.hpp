@@ -25,7 +25,7 @@ struct Ladder {
   std::vector<std::string> balance{"none"};
   /// Nanoseconds of an item, in the order of tess::collide::SimulatedCosts.
   std::vector<double> costs{9.12, 13.14, 0.22, 0, 12.17, 42.68};
-  /// The simulated machines, as for --sim.
+  /// What else --sim would say of the machines.
   std::string network = "cost=580ns,latency=2us,bandwidth=4.2GB/s,per-process=1";
 };
 

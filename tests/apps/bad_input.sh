@@ -196,9 +196,9 @@ refuses "--machines: Value 0 not in range" "$bin/collide_scene" crowd:2048 --stu
 refuses "3 PEs do not divide into processes of 2" "$bin/collide_scene" crowd:2048 --study pes --machines 4,3 --network per-process=2
 refuses "--network pes=3 names a number of PEs" "${crowd[@]}" --network pes=3
 refuses "--weak: .*box.msh is no scene made by rule" "$bin/collide_scene" "$scratch/box.msh" --study pes --weak
-refuses "--machines: needs --study" "$bin/collide_scene" crowd:2048 --machines 1
+refuses "--machines: needs --study pes" "$bin/collide_scene" crowd:2048 --machines 1
 refuses "--balance none does not work with --study voxels" "$bin/collide_scene" crowd:2048 --study voxels --balance none
-refuses "--triangles does not work with --study" "${crowd[@]}" --triangles
+refuses "--triangles does not work with --study pes" "${crowd[@]}" --triangles
 refuses "--stability: needs no PEs" "$bin/collide_scene" --stability --pes 2
 refuses "^collide_scene: error: INPUT crowd:2048 does not work with --stability" "$bin/collide_scene" --stability crowd:2048
 refuses "^particles: error: --steps 5 does not work with --stability" "$bin/particles" --stability --steps 5

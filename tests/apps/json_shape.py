@@ -24,7 +24,7 @@ leanmd --study --atoms 500 --cells 3,3,3 --steps 8
 leanmd --stability
 collide_scene boxes:500 --steps 2
 collide_scene boxes:500 --pes 2
-collide_scene boxes:500 --study
+collide_scene boxes:500 --study voxels
 collide_scene boxes:500 --study pes
 collide_scene --stability
 particles {SCENE} --steps 5

@@ -164,7 +164,7 @@ constexpr kit::Column<PesRow> pes_columns[] = {
     {"predicted_seconds", "predicted s", "12.6f", of<&PesRow::predicted>},
     {"balancing_seconds", "balancing", "10.6f", of<&PesRow::balancing>},
     {"moved", "moved", "8", of<&PesRow::n_moved>},
-    {"speed_up", "speed-up", "8.2f", of<&PesRow::speed_up>},
+    {"speedup", "speed-up", "8.2f", of<&PesRow::speed_up>},
     {"efficiency", "efficiency", "10.3f", of<&PesRow::efficiency>},
     {"seconds", "measured s", "12.6f", of<&PesRow::measured>},
     {"pairs", "pairs", "12", [](const PesRow& r) -> Json { return r.answer.n_pairs; }},
