@@ -28,7 +28,7 @@ collide_scene boxes:500 --study voxels
 collide_scene boxes:500 --study pes
 collide_scene --stability
 particles {SCENE} --steps 5
-particles {SCENE} --study --resolutions 8 --steps 5
+particles {SCENE} --study --resolutions 8
 particles --stability
 overset kuhn:8 ball:4
 overset ball --study h
