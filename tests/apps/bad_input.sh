@@ -182,7 +182,7 @@ for unused in --log-steps "--checkpoint $scratch/saved" "--restart $scratch/save
   refuses "$unused does not work with --repeat" "$bin/stencil" --repeat 3 $unused
 done
 refuses "--repeat" "$bin/stencil" --repeat 0
-for unused in "--balance greedy" "--order 3" "--max-level 3" "--steps 4" "--json $scratch/result.json"; do
+for unused in "--balance greedy" "--order 3" "--max-level 3" "--steps 4"; do
   refuses "$unused does not work with --stability" "$bin/amr" --stability $unused
 done
 refuses "--by: needs a --heat map" "$bin/tess_monitor" --by pe

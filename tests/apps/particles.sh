@@ -181,7 +181,7 @@ for file in field.svg paths.svg trajectories.pvd; do
   rm -r "$scratch/taken"
 done
 : >"$scratch/taken"
-unwritable '--out .*taken cannot be made a folder' "$particles" "$scratch/scene.json" --out "$scratch/taken"
+unwritable '--out: .*taken cannot be made a folder' "$particles" "$scratch/scene.json" --out "$scratch/taken"
 mkdir -p "$scratch/late/trajectories/step_000000020.vtp"
 unwritable '--out .*late/trajectories/step_000000020.vtp: cannot be written: is a directory; give' \
   "$particles" "$scratch/scene.json" --pes 1 --out "$scratch/late"

@@ -155,7 +155,7 @@ TEST_CASE("a checkpoint that another run writes meanwhile is noticed", "[runtime
   const Job other = run({.from = "", .folder = scratch.path("other")});
   Job job{.from = "", .folder = scratch.path("saved"), .n_steps = 2};
   job.other = tess::latest_checkpoint(other.folder);
-  run(job);
+  job = run(job);
   CHECK(job.refused.find("checkpoint-000009 is a checkpoint of another run") != std::string::npos);
 }
 
