@@ -277,9 +277,9 @@ refuses --when "${lab[@]}" --when sometimes
 refuses moving_average "${lab[@]}" --prediction nonsense
 refuses --speed "${lab[@]}" --speed 1,1,0.5
 refuses --speed "${lab[@]}" --speed 1,1,0.5,0
-refuses "--plot: .*--replay" "${replays[@]}" --replay "$scratch/empty.exo" --plot "$scratch"
+refuses "--plot .*--replay" "${replays[@]}" --replay "$scratch/empty.exo" --plot "$scratch"
 refuses "--json /nowhere/x.json" "${replays[@]}" --replay "$scratch/empty.exo" --json /nowhere/x.json
-refuses "--workload: .*--replay" "${replays[@]}" --replay "$scratch/empty.exo" --workload linear
+refuses "--workload .*--replay" "${replays[@]}" --replay "$scratch/empty.exo" --workload linear
 refuses "--fold: needs --replay" "${lab[@]}" --fold modulo
 refuses missing.json "${replays[@]}" --replay "$scratch/missing.json"
 refuses empty.exo "${replays[@]}" --replay "$scratch/empty.exo"
