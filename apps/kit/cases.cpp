@@ -14,10 +14,6 @@ Json verdict(const Case& one) {
   return std::string(one.ok ? "ok" : "FAILED") + (one.note.empty() ? "" : ": " + one.note);
 }
 
-void print_line(const std::string& line) {
-  tess::print_text(line);
-}
-
 int finish_cases(const Driver& driver, const Json& results, std::size_t n_failed,
                  const std::string& remark) {
   driver.write(results);

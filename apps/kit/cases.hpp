@@ -11,6 +11,7 @@
 #pragma once
 
 #include "apps/kit/rows.hpp"
+#include "runtime/run.hpp"
 
 #include <optional>
 #include <string>
@@ -37,8 +38,6 @@ struct Case {
 /// the exit code.
 int finish_cases(const Driver& driver, const Json& results, std::size_t n_failed,
                  const std::string& remark);
-/// Prints on process 0.
-void print_line(const std::string& line);
 
 template <class Row = Case>
 class Cases {
@@ -50,8 +49,8 @@ class Cases {
   }
 
   void add(Row row) {
-    if (rows_.empty()) print_line(columns_.head());
-    print_line(columns_.line(row));
+    if (rows_.empty()) tess::print_text(columns_.head());
+    tess::print_text(columns_.line(row));
     rows_.push_back(std::move(row));
   }
   [[nodiscard]] const std::vector<Row>& rows() const { return rows_; }

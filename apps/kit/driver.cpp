@@ -130,10 +130,7 @@ Json Driver::document(const Json& results, const Json& more) const {
   for (const Known& known : known_)
     if ((known.modes & mode_) != 0)
       options[known.name.substr(known.name.find_first_not_of('-'))] = line_.value(known.name);
-  Json out{{"program", program_}, {"version", version()},          {"commit", build_commit()},
-           {"machine", machine_}, {"options", std::move(options)}, {"results", results}};
-  out.update(more);
-  return out;
+  return kit::document(program_, machine_, options, results, more);
 }
 
 void Driver::write(const Json& results, const Json& more) const {

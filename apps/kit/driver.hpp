@@ -99,8 +99,6 @@ class Driver {
   /// True on the process that prints.
   [[nodiscard]] bool speaks() const { return speaks_; }
   [[nodiscard]] Progress& progress() { return *progress_; }
-  /// True if --json is given.
-  [[nodiscard]] bool writes_json() const { return !json_.empty(); }
 
   /// The whole of the JSON: `results`, and the members of `more` below them.
   [[nodiscard]] Json document(const Json& results, const Json& more = {}) const;

@@ -17,7 +17,7 @@ class FileNames {
   void reads(std::string what, std::string path);
   /// `what`: "--json", or "--out r.pvtu:" for a file that follows from it.
   void writes(std::string what, std::string path);
-  /// The same for a picture and its data beside it.
+  /// Does the same for a picture and the data beside it.
   void writes_picture(const std::string& what, const std::string& svg);
 
   struct Taken {

@@ -113,13 +113,6 @@ class Rows {
   std::vector<Value> values_;
 };
 
-/// Draws rows into a chart: a point per row at (x, y), and a line per name of `series`.
-template <class Row>
-void draw(Chart& chart, std::span<const Row> rows, Json (*x)(const Row&), Json (*y)(const Row&),
-          std::string (*series)(const Row&)) {
-  for (const Row& row : rows) add_point(chart, series(row), x(row), y(row));
-}
-
 /// The power p of the best fit y = c x^p over the rows; none where fewer than two of them count.
 [[nodiscard]] std::optional<double> fitted_order(const Json& x, const Json& y);
 template <class Row>

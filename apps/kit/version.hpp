@@ -1,4 +1,4 @@
-// Which build a program is: for --version and for every JSON.
+// This says which build a program is: for --version and for every JSON.
 #pragma once
 
 #include <string>

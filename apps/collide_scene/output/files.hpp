@@ -16,7 +16,7 @@ namespace collide_scene {
 void prepare_files(const std::string& prefix, const std::vector<std::string>& endings,
                    kit::FileNames& files);
 
-/// Of the files of a run.
+/// Gives the endings of the files of a run.
 [[nodiscard]] std::vector<std::string> endings();
 
 /// PREFIX.svg, PREFIX_hits.vtp, PREFIX_pairs.vtp. `pairs`: of the scene as it is.

@@ -3,6 +3,7 @@
 #include "apps/collide_scene/input/load.hpp"
 #include "apps/collide_scene/input/motion.hpp"
 #include "apps/collide_scene/run/parallel.hpp"
+#include "apps/kit/ladder.hpp"
 #include "apps/kit/median.hpp"
 #include "runtime/balance.hpp"
 #include "runtime/core/hilbert.hpp"
@@ -146,11 +147,8 @@ PesRow measure(const Case& given, const tess::SimulatedOptions& machine,
   return row;
 }
 
-/// The machine of one PE has one process.
 tess::SimulatedOptions machine_of(const Ladder& ladder, std::int32_t n_pes) {
-  tess::SimulatedOptions machine = tess::parse_simulated(
-      fmt::format("{}{}pes={}{}", ladder.network, ladder.network.empty() ? "" : ",", n_pes,
-                  n_pes == 1 ? ",per-process=1" : ""));
+  tess::SimulatedOptions machine = kit::machine_of(ladder.network, n_pes);
   machine.watches_cost = false;  // the work of this program is left out
   return machine;
 }
@@ -181,9 +179,6 @@ void check_ladder(const Options& options) {
     if (ladder.is_weak && find_scene_kind(input) == nullptr)
       fail(ErrorCode::bad_argument, "--weak: ", input,
            " is no scene made by rule; give scenes such as planes:65536, or leave it out");
-  if (ladder.network.starts_with("pes=") || ladder.network.find(",pes=") != std::string::npos)
-    fail(ErrorCode::bad_argument, "--network ", ladder.network,
-         " names a number of PEs; give them with --machines 1,4,16");
   for (const std::int32_t n : ladder.pes) (void)machine_of(ladder, n);
   for (const std::string& balance : ladder.balance) {
     if (balance == "none") continue;

@@ -12,7 +12,7 @@ namespace lb_lab {
 [[nodiscard]] const kit::Rows<Row>& report();
 /// The best cut and strategy of each workload, a line each.
 [[nodiscard]] std::string best_text(const Sweep& sweep);
-/// The same as rows.
+/// Gives the same as rows of the JSON.
 [[nodiscard]] kit::Json best_json(const Sweep& sweep);
 
 /// All workloads and strategies, a line each.

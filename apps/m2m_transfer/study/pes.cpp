@@ -1,5 +1,6 @@
 #include "apps/m2m_transfer/study/pes.hpp"
 
+#include "apps/kit/ladder.hpp"
 #include "apps/m2m_transfer/run/measure.hpp"
 #include "runtime/core/error.hpp"
 
@@ -103,14 +104,9 @@ Picture picture_of(const std::vector<PesRow>& rows, const std::string& title) {
 }
 
 std::vector<SimulatedOptions> machines_of(std::vector<std::int32_t> pes, const std::string& keys) {
-  if (keys.starts_with("pes=") || keys.find(",pes=") != std::string::npos)
-    fail(ErrorCode::bad_argument, "--network ", keys,
-         " names a number of PEs; give them with --machines 1,4,16");
   std::ranges::sort(pes);
   std::vector<SimulatedOptions> machines;
-  for (const std::int32_t n : pes)
-    machines.push_back(parse_simulated(fmt::format("pes={}{}{}{}", n, keys.empty() ? "" : ",", keys,
-                                                   n == 1 ? ",per-process=1" : "")));
+  for (const std::int32_t n : pes) machines.push_back(kit::machine_of(keys, n));
   return machines;
 }
 

@@ -31,7 +31,7 @@ struct PesRow {
 [[nodiscard]] Picture picture_of(const std::vector<PesRow>& rows, const std::string& title);
 
 /// The machines of so many PEs, in ascending order; `keys` is what else --sim would say of them.
-/// That of one PE has one process. Throws Error (bad_argument) for keys that do not fit.
+/// The machine of one PE has one process. Throws Error (bad_argument) for keys that do not fit.
 [[nodiscard]] std::vector<SimulatedOptions> machines_of(std::vector<std::int32_t> pes,
                                                         const std::string& keys);
 

@@ -40,7 +40,7 @@ RoundSum sum_of(std::uint64_t question, int x) {
   const std::uint64_t value = mix(question ^ static_cast<std::uint64_t>(x));
   return {1, value, value, value};
 }
-/// Of n elements, as a serial program has it.
+/// Gives the result of n elements, as a serial program has it.
 RoundSum sum_of_all(std::uint64_t question, int n) {
   RoundSum all = sum_of(question, 0);
   for (int x = 1; x < n; ++x) all = AddRoundSums{}(all, sum_of(question, x));
