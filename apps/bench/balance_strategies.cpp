@@ -4,6 +4,7 @@
 #include "runtime/balance/honour.hpp"
 #include "runtime/balance/metrics.hpp"
 #include "runtime/balance/strategy.hpp"
+#include "runtime/command_line.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -31,14 +32,7 @@ bool row(const std::string& scene, const Snapshot& s, const std::string& name) {
   return honour(s, result) == result && times[2] < 1;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  const std::vector<std::string> strategies = strategy_names();
-  if (argc > 2 || (argc == 2 && std::ranges::find(strategies, argv[1]) == strategies.end())) {
-    fmt::print(stderr, "usage: bench_balance [STRATEGY], one of {}\n", fmt::join(strategies, ", "));
-    return 2;
-  }
+int run(const std::string& only) {
   const std::vector<std::pair<std::string, Snapshot>> scenes = {
       {"mod 7, 64 on 4", mod_seven(Start::blocks)},
       {"mod 7, all on PE 0", mod_seven(Start::all_on_first)},
@@ -48,10 +42,21 @@ int main(int argc, char** argv) {
              "spread ms", "max/avg", "moves", "ext. bytes");
   bool good = true;
   for (const auto& [scene, s] : scenes)
-    for (const std::string& name : strategies) {
-      if (argc > 1 && name != argv[1]) continue;
+    for (const std::string& name : strategy_names()) {
+      if (!only.empty() && name != only) continue;
       if (s.elements.position.empty() && (name == "rcb" || name == "hilbert")) continue;
       good = row(scene, s, name) && good;
     }
   return good ? 0 : 1;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return tess::guarded(argv[0], [&] {
+    std::string only;
+    tess::CommandLine line("Time and result of each strategy on a set of scenes.");
+    line.option("STRATEGY", only, "this one only").one_of(strategy_names());
+    return line.parse(argc, argv, {}) ? run(only) : 0;
+  });
 }

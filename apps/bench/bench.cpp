@@ -23,7 +23,7 @@ void work(std::chrono::nanoseconds time) {
 Bench::Bench(Options options, std::vector<char*> command_line, const tess::Machine& machine)
     : options_(std::move(options)),
       command_line_(std::move(command_line)),
-      origin_{short_description(machine), machine.n_pes(), machine.n_processes()},
+      report_({short_description(machine), machine.n_pes(), machine.n_processes()}),
       virtual_time_(machine.virtual_time()),
       speaks_(machine.process().value == 0) {}
 
@@ -39,11 +39,11 @@ bool Bench::has(Needs needs) const {
     case Needs::nothing:
       return true;
     case Needs::two_pes:
-      return origin_.pes > 1;
+      return origin().pes > 1;
     case Needs::two_cores:
-      return origin_.pes > 1 && origin_.ranks == 1 && !virtual_time_;
+      return origin().pes > 1 && origin().ranks == 1 && !virtual_time_;
     case Needs::two_processes:
-      return origin_.ranks > 1 && !virtual_time_;
+      return origin().ranks > 1 && !virtual_time_;
   }
   return false;
 }
@@ -54,9 +54,7 @@ bool Bench::wants(std::string_view row) const {
 
 void Bench::row(std::string_view name, const Samples& samples, std::string_view unit,
                 double limit) {
-  if (!speaks_ || !wants(name)) return;
-  rows_.push_back(make_row(name, samples, unit, limit));
-  tess::print(csv_line(rows_.back(), origin_));
+  if (speaks_ && wants(name)) report_.row(name, samples, unit, limit);
 }
 
 std::int64_t times_in_sample(double nanoseconds, std::int64_t most) {

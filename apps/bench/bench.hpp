@@ -66,7 +66,7 @@ class Bench {
     return options_.quick ? quick : full;
   }
   [[nodiscard]] bool has(Needs needs) const;
-  [[nodiscard]] std::int32_t ranks() const { return origin_.ranks; }
+  [[nodiscard]] std::int32_t ranks() const { return origin().ranks; }
   /// True on the process that prints.
   [[nodiscard]] bool speaks() const { return speaks_; }
   /// True if the row is asked for, by its name or its shape's, and this machine has what it needs.
@@ -74,8 +74,8 @@ class Bench {
 
   /// Shows a row, if it is wanted. Process 0 speaks; on the others nothing happens.
   void row(std::string_view name, const Samples& samples, std::string_view unit, double limit = 0);
-  [[nodiscard]] const std::vector<Row>& rows() const { return rows_; }
-  [[nodiscard]] const Origin& origin() const { return origin_; }
+  [[nodiscard]] const Report& report() const { return report_; }
+  [[nodiscard]] const Origin& origin() const { return report_.origin(); }
 
   /// Called by main: the names of the rows to come.
   void choose(std::vector<std::string> wanted) { wanted_ = std::move(wanted); }
@@ -85,11 +85,10 @@ class Bench {
 
   Options options_;
   std::vector<char*> command_line_;
-  Origin origin_;
+  Report report_;
   bool virtual_time_;
   bool speaks_;
   std::vector<std::string> wanted_;
-  std::vector<Row> rows_;
 };
 
 struct Shape {

@@ -14,8 +14,8 @@
 #include "apps/bench/collide/chare_rows.hpp"
 #include "apps/bench/collide/conversion_rows.hpp"
 #include "apps/bench/collide/one_core.hpp"
+#include "apps/kit/driver.hpp"
 #include "apps/kit/write_file.hpp"
-#include "runtime/command_line.hpp"
 
 #include <algorithm>
 #include <fmt/core.h>
@@ -81,7 +81,7 @@ int main(int argc, char** argv) {
     kit::require_writable("--json", json);
 
     bench::Output output(options, "one core");
-    output.header();
+    output.report().header();
     {
       const bench::OneCore one_core;
       bench::box_rows(output);
@@ -90,7 +90,13 @@ int main(int argc, char** argv) {
         bench::growth_rows(output);
     }
     bench::chare_rows(output);
-    if (!json.empty()) kit::write_file(json, output.json());
+    if (!json.empty())
+      kit::write_file(json, kit::json_text(kit::document("bench_collide", "one core",
+                                                         {{"names", options.names},
+                                                          {"repeat", options.repeat},
+                                                          {"growth", options.growth},
+                                                          {"quick", options.quick}},
+                                                         output.report().json())));
     return 0;
   });
 }

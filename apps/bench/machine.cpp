@@ -5,6 +5,7 @@
 //     mpirun -n 2 bench_machine   one way between two ranks, and plain MPI in the same run
 #include "apps/kit/median.hpp"
 #include "runtime/base/pool.hpp"
+#include "runtime/command_line.hpp"
 #include "runtime/core/check.hpp"
 #include "runtime/machine/mpi.hpp"
 #include "runtime/machine/threads.hpp"
@@ -235,14 +236,17 @@ void bench_threads() {
 }  // namespace tess::detail
 
 int main(int argc, char** argv) {
-  const bool multiple = argc == 2 && std::strcmp(argv[1], "--multiple") == 0;
-  if (argc > 1 && !multiple) {
-    fmt::print(stderr, "usage: bench_machine [--multiple], which asks MPI for all threads\n");
-    return 2;
-  }
-  if (tess::under_mpirun())
-    tess::detail::bench_processes(argc, argv,
-                                  multiple ? MPI_THREAD_MULTIPLE : MPI_THREAD_SERIALIZED);
-  else
-    tess::detail::bench_threads();
+  return tess::guarded(argv[0], [&] {
+    bool multiple = false;
+    tess::CommandLine line(
+        "The costs of a machine without the runtime; under mpirun of two ranks.");
+    line.flag("--multiple", multiple, "ask MPI for all threads");
+    if (!line.parse(argc, argv, {})) return 0;
+    if (tess::under_mpirun())
+      tess::detail::bench_processes(argc, argv,
+                                    multiple ? MPI_THREAD_MULTIPLE : MPI_THREAD_SERIALIZED);
+    else
+      tess::detail::bench_threads();
+    return 0;
+  });
 }

@@ -5,7 +5,7 @@
 //     bench --pes 1;  bench --pes 2;  mpirun -n 2 bench --pes 1;  bench message one_way --pes 2
 #include "apps/bench/calibrate/calibrate.hpp"
 #include "apps/bench/shapes/shapes.hpp"
-#include "apps/kit/file_names.hpp"
+#include "apps/kit/driver.hpp"
 #include "apps/kit/write_file.hpp"
 #include "runtime/command_line.hpp"
 
@@ -118,13 +118,18 @@ int main(int argc, char** argv) {
       if (speaks) bench::list(bench);
       return 0;
     }
-    if (speaks) tess::print(bench::csv_header());
+    if (speaks) bench.report().header();
     for (const bench::Shape& shape : bench::all_shapes()) {
       if (!bench::any_wanted(bench, shape)) continue;
       if (const int code = shape.run(bench); code != 0) return code;
     }
     if (speaks && !options.json.empty())
-      kit::write_file(options.json, bench::json_text(bench.rows(), bench.origin()));
+      kit::write_file(
+          options.json,
+          kit::json_text(kit::document(
+              "bench", setup.machine->describe(),
+              {{"names", options.names}, {"repeat", options.repeat}, {"quick", options.quick}},
+              bench.report().json())));
     return 0;
   });
 }

@@ -23,7 +23,7 @@ import tempfile
 STENCIL = r"steps: ([\d.]+) s"
 TASKS = r"Elapsed Time ([\d.e+-]+) seconds"
 LABORATORY = r"\n\S+ +\d+ greedy_refine +([\d.]+)"
-TRANSFER = ["pairs", 0, "seconds", "transfer"]  # in the file of --json: the printed table has steps of 0.1 ms
+TRANSFER = ["results", 0, "transfer_seconds"]  # in the file of --json: the printed table has steps of 0.1 ms
 
 # Name, program with options, with --quick, where the seconds stand: a pattern of its output, or a place in its JSON.
 CASES = [

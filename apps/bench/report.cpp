@@ -1,8 +1,8 @@
 #include "apps/bench/report.hpp"
 
 #include "apps/kit/median.hpp"
+#include "apps/kit/rows.hpp"
 #include "apps/kit/version.hpp"
-#include "runtime/core/escape.hpp"
 #include "runtime/here.hpp"
 #include "runtime/run.hpp"
 #include "runtime/scheduler/pe.hpp"
@@ -14,10 +14,38 @@
 namespace bench {
 namespace {
 
+using R = const Row&;
+using kit::Json, kit::rounded;
+
+std::optional<double> ratio(R row) {
+  return row.limit ? std::optional(row.samples.median() / *row.limit) : std::nullopt;
+}
 /// Four digits, without an exponent where the number is large.
 std::string shown(double value) {
   return std::abs(value) < 1000 ? fmt::format("{:.4g}", value) : fmt::format("{:.0f}", value);
 }
+
+std::string csv_line(R row) {
+  const std::string limit =
+      row.limit ? fmt::format("{},{:.3f}", shown(*row.limit), *ratio(row)) : ",";
+  return fmt::format("{},{},{},{},{:.2f},{},{},{},\"{}\",{},{}\n", row.name,
+                     shown(row.samples.median()), row.unit, shown(row.samples.least()),
+                     row.samples.spread(), limit, row.origin.pes, row.origin.ranks,
+                     row.origin.machine, kit::build_preset(), kit::build_commit());
+}
+
+constexpr kit::Column<Row> columns[] = {
+    {"name", "", nullptr, kit::of<&Row::name>},
+    {"median", "", nullptr, [](R r) { return rounded(r.samples.median()); }},
+    {"unit", "", nullptr, kit::of<&Row::unit>},
+    {"least", "", nullptr, [](R r) { return rounded(r.samples.least()); }},
+    {"spread", "", nullptr, [](R r) { return rounded(r.samples.spread()); }},
+    {"limit", "", nullptr, [](R r) { return r.limit ? rounded(*r.limit) : Json(); }},
+    {"ratio", "", nullptr, [](R r) { return r.limit ? rounded(*ratio(r)) : Json(); }},
+    {"pes", "", nullptr, [](R r) -> Json { return r.origin.pes; }},
+    {"ranks", "", nullptr, [](R r) -> Json { return r.origin.ranks; }},
+    {"machine", "", nullptr, [](R r) -> Json { return r.origin.machine; }},
+    {"preset", "", nullptr, [](R) -> Json { return kit::build_preset(); }}};
 
 }  // namespace
 
@@ -37,53 +65,17 @@ double Samples::spread() const {
   return median() == 0 ? 0 : (*greatest - *least) / std::abs(median());
 }
 
-Row make_row(std::string_view name, const Samples& samples, std::string_view unit, double limit) {
-  return {.name = std::string(name),
-          .median = samples.median(),
-          .unit = std::string(unit),
-          .least = samples.least(),
-          .spread = samples.spread(),
-          .limit = limit};
-}
-
-std::string csv_header() {
-  return "name,median,unit,least,spread,limit,ratio,pes,ranks,machine,preset,commit\n";
-}
-
-std::string csv_line(const Row& row, const Origin& common) {
-  const Origin origin = row.origin.value_or(common);
-  const std::string limit =
-      row.limit == 0 ? "," : fmt::format("{},{:.3f}", shown(row.limit), row.median / row.limit);
-  return fmt::format("{},{},{},{},{:.2f},{},{},{},\"{}\",{},{}\n", row.name, shown(row.median),
-                     row.unit, shown(row.least), row.spread, limit, origin.pes, origin.ranks,
-                     origin.machine, kit::build_preset(), kit::build_commit());
-}
-
-std::string json_text(const std::vector<Row>& rows, const Origin& common) {
-  std::string out = "{\"rows\": [";
-  for (const Row& row : rows) {
-    const Origin origin = row.origin.value_or(common);
-    const std::string limit = row.limit == 0 ? "\"limit\": null, \"ratio\": null"
-                                             : fmt::format("\"limit\": {:.6g}, \"ratio\": {:.4f}",
-                                                           row.limit, row.median / row.limit);
-    out += fmt::format(
-        "{}\n  {{\"name\": {}, \"median\": {:.6g}, \"unit\": {}, \"least\": {:.6g}, "
-        "\"spread\": {:.4f}, {}, \"pes\": {}, \"ranks\": {}, \"machine\": {}, \"preset\": {}, "
-        "\"commit\": {}}}",
-        &row == rows.data() ? "" : ",", tess::json_string(row.name), row.median,
-        tess::json_string(row.unit), row.least, row.spread, limit, origin.pes, origin.ranks,
-        tess::json_string(origin.machine), tess::json_string(kit::build_preset()),
-        tess::json_string(kit::build_commit()));
-  }
-  return out + "\n]}\n";
-}
-
 void Report::header() const {
-  tess::print(csv_header());
+  tess::print("name,median,unit,least,spread,limit,ratio,pes,ranks,machine,preset,commit\n");
 }
-void Report::row(std::string_view name, const Samples& samples, std::string_view unit,
-                 double limit) const {
-  tess::print(csv_line(make_row(name, samples, unit, limit), origin_));
+void Report::row(std::string_view name, const Samples& samples, std::string_view unit, double limit,
+                 std::optional<Origin> origin) {
+  rows_.push_back({std::string(name), samples, std::string(unit),
+                   limit == 0 ? std::nullopt : std::optional(limit), origin.value_or(origin_)});
+  tess::print(csv_line(rows_.back()));
+}
+kit::Json Report::json() const {
+  return kit::Rows<Row>(columns).json(rows_);
 }
 
 }  // namespace bench

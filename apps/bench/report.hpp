@@ -9,6 +9,10 @@
 #include <string_view>
 #include <vector>
 
+namespace kit {
+class Json;
+}
+
 namespace bench {
 
 /// Time on the PE it is made on; virtual on the simulated machine.
@@ -46,34 +50,29 @@ struct Origin {
 /// One figure as it is shown.
 struct Row {
   std::string name;
-  double median = 0;
+  Samples samples;
   std::string unit;
-  double least = 0;
-  double spread = 0;
-  double limit = 0;  ///< what the machine allows at best, in the same unit; 0: not known
-  std::optional<Origin> origin{};  ///< if it is not that of the other rows
+  std::optional<double> limit;  ///< what the machine allows at best, in the same unit
+  Origin origin;
 };
-[[nodiscard]] Row make_row(std::string_view name, const Samples& samples, std::string_view unit,
-                           double limit = 0);
 
-/// "name,median,unit,least,spread,limit,ratio,pes,ranks,machine,preset,commit", a line.
-[[nodiscard]] std::string csv_header();
-[[nodiscard]] std::string csv_line(const Row& row, const Origin& origin);
-
-/// An object with the list "rows"; each has the columns of the CSV as keys. An absent limit is
-/// null.
-[[nodiscard]] std::string json_text(const std::vector<Row>& rows, const Origin& origin);
-
-/// Prints rows as they come.
+/// Prints rows as they come, and keeps them for JSON.
 class Report {
  public:
-  explicit Report(const std::string& machine) : origin_{machine} {}
+  explicit Report(Origin origin) : origin_(std::move(origin)) {}
+  [[nodiscard]] const Origin& origin() const { return origin_; }
+
+  /// "name,median,unit,least,spread,limit,ratio,pes,ranks,machine,preset,commit", a line.
   void header() const;
-  void row(std::string_view name, const Samples& samples, std::string_view unit,
-           double limit = 0) const;
+  /// `limit` 0: not known. `origin`: if it is not that of the other rows.
+  void row(std::string_view name, const Samples& samples, std::string_view unit, double limit = 0,
+           std::optional<Origin> origin = {});
+  /// An array with an object per row. An absent limit is null.
+  [[nodiscard]] kit::Json json() const;
 
  private:
   Origin origin_;
+  std::vector<Row> rows_;
 };
 
 }  // namespace bench

@@ -39,8 +39,8 @@ void Driver::folder(const std::string& name, std::string& path, const std::strin
   folders_.push_back(known_.back().name);
 }
 
-void Driver::enters(const std::string& option, Modes mode) {
-  entries_.push_back({option, mode});
+void Driver::enters(const std::string& option, Modes mode, const std::string& value) {
+  entries_.push_back({option, value, mode});
 }
 
 void Driver::study(const std::string& meaning) {
@@ -83,10 +83,12 @@ bool Driver::parse(int argc, char** argv, const std::string& footer) {
   mode_ = Mode::run;
   std::string reason;
   for (const Entry& entry : entries_) {
-    if (!line_.is_given(entry.option)) continue;
-    if (mode_ != Mode::run) tess::refuse_together(reason, entry.option);
-    mode_ = entry.mode;
-    reason = entry.option;
+    const auto& [option, value, mode] = entry;
+    if (!line_.is_given(option) || (!value.empty() && line_.value(option) != value)) continue;
+    if (mode_ != Mode::run && mode_ != mode && !reason.starts_with(option))
+      tess::refuse_together(reason, option);
+    mode_ = mode;
+    reason = value.empty() ? option : option + ' ' + value;
   }
   refuse_others(reason);
   for (const std::string& name : folders_) make_folder(name, line_.value(name));
@@ -109,8 +111,9 @@ void Driver::refuse_others(const std::string& reason) const {
     if ((known.modes & mode_) != 0 || !line_.is_given(known.name)) continue;
     if (mode_ != Mode::run) line_.refuse_beside(reason, {known.name.c_str()});
     std::string needed;
-    for (const Entry& entry : entries_)
-      if ((known.modes & entry.mode) != 0) needed += (needed.empty() ? "" : " or ") + entry.option;
+    for (const auto& [option, value, mode] : entries_)
+      if ((known.modes & mode) != 0 && needed.find(option) == std::string::npos)
+        needed += (needed.empty() ? "" : " or ") + option + (value.empty() ? "" : " ") + value;
     line_.refuse_without(needed, {known.name.c_str()});
   }
 }

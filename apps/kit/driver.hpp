@@ -64,8 +64,9 @@ class Driver {
   tess::Option flag(const std::string& name, bool& value, const std::string& meaning);
   /// The option names a folder to write to, which parse() makes, so that other files may go there.
   void folder(const std::string& name, std::string& path, const std::string& meaning);
-  /// The program is in this mode if the option is given.
-  void enters(const std::string& option, Modes mode);
+  /// The program is in this mode if the option is given, or given with this value. Of several modes
+  /// of one option that fit, the last counts.
+  void enters(const std::string& option, Modes mode, const std::string& value = "");
 
   // Options that all programs share. Each says what it means in this one.
   void study(const std::string& meaning);
@@ -113,7 +114,7 @@ class Driver {
     Modes modes;
   };
   struct Entry {
-    std::string option;
+    std::string option, value;  // of any value if it is empty
     Modes mode;
   };
 

@@ -18,8 +18,8 @@ void FileNames::take(Taken file) {
     if ((!file.is_written && !other.is_written) || !is_same_file(file.path, other.path)) continue;
     const Taken& written = file.is_written ? file : other;
     const Taken& lost = file.is_written ? other : file;
-    tess::fail(tess::ErrorCode::bad_argument, written.what, " ", written.path,
-               " would overwrite ", lost.what, " ", lost.path, "; give another file");
+    tess::fail(tess::ErrorCode::bad_argument, written.what, " ", written.path, " would overwrite ",
+               lost.what, " ", lost.path, "; give another file");
   }
   taken_.push_back(std::move(file));
 }

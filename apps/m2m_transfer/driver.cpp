@@ -1,21 +1,17 @@
 #include "apps/m2m_transfer/driver.hpp"
 
 #include "apps/kit/write_file.hpp"
-#include "apps/m2m_transfer/contradictions.hpp"
-#include "apps/m2m_transfer/drive_files.hpp"
+#include "apps/m2m_transfer/options.hpp"
 #include "apps/m2m_transfer/output/drift.hpp"
 #include "apps/m2m_transfer/output/explain.hpp"
-#include "apps/m2m_transfer/output/kinds_table.hpp"
 #include "apps/m2m_transfer/output/picture.hpp"
 #include "apps/m2m_transfer/output/table.hpp"
 #include "apps/m2m_transfer/result_format.hpp"
-#include "apps/m2m_transfer/run/drift.hpp"
 #include "apps/m2m_transfer/run/measure.hpp"
 #include "apps/m2m_transfer/study/checks.hpp"
+#include "apps/m2m_transfer/study/pes.hpp"
 #include "apps/m2m_transfer/study/steps.hpp"
-#include "apps/m2m_transfer/study/study.hpp"
 #include "m2m/read_mesh.hpp"
-#include "runtime/command_line.hpp"
 #include "runtime/core/error.hpp"
 
 #include <algorithm>
@@ -25,6 +21,8 @@
 
 namespace m2m_transfer {
 namespace {
+
+using Reports = std::vector<TransferReport>;
 
 TaskOf<Problem> read(const Request& request, kit::Progress& progress) {
   progress.phase("reading");
@@ -41,27 +39,10 @@ void write_meshes(const std::string& path, const Problem& problem) {
                    *problem.meshes[m].mesh, problem.meshes[m].fields);
 }
 
-/// The request of a run without a study.
-Request single_request(const DriverOptions& options) {
-  if (options.policies.size() > 1)
-    fail(ErrorCode::bad_argument, "--policy is given more than once; give it once, or add --study");
-  if (options.request.target.empty())
-    fail(ErrorCode::bad_argument,
-         "TARGET is missing; give a source and a target mesh (--help lists the arguments)");
-  Request request = options.request;
-  request.policy = options.policies.front();
-  request.repeat = options.repeat.value_or(1);
-  return request;
-}
-
-bool wants_all_kinds(const DriverOptions& options) {
-  return options.request.kind == "all";
-}
-
 /// The kinds of a table of kinds. Options that only some of them know are refused before the first
 /// runs.
-std::vector<TransferKind> kinds_of(const DriverOptions& options) {
-  if (options.kind_is_given && !wants_all_kinds(options))
+std::vector<TransferKind> kinds_of(const kit::Driver& driver, const Options& options) {
+  if (driver.is_given("--kind") && options.request.kind != "all")
     return {parse_transfer_kind(options.request.kind)};
   for (const std::string& policy : options.policies) {
     Request request = options.request;
@@ -71,24 +52,36 @@ std::vector<TransferKind> kinds_of(const DriverOptions& options) {
   return {all_transfer_kinds.begin(), all_transfer_kinds.end()};
 }
 
-Task drift_table(const DriverOptions& options, kit::Progress& progress) {
-  Request request = single_request(options);
+Task move_files(const Options& options, kit::Driver& driver) {
+  const FileFieldsReport report = co_await move_file_fields(options.request, driver.progress());
+  driver.write(std::vector{json_of(report)});
+  driver.progress().clear();
+  print(table(report));
+}
+
+Task drift_table(const Options& options, kit::Driver& driver) {
+  Request request = options.request;
   const std::vector<std::int32_t> trips = parse_trips(options.round_trips);
-  const std::vector<TransferKind> kinds = kinds_of(options);
+  const std::vector<TransferKind> kinds = kinds_of(driver, options);
   request.kind = name_of(kinds.front());
-  kit::require_writable("--json", options.json);
   kit::make_folder("--plot", options.plot);
   Drift drift;
-  co_await measure_drift(request, kinds, trips, progress, drift);
-  progress.clear();
-  print(table(drift));
-  if (!options.plot.empty()) print(write(drift, options.plot));
-  if (!options.json.empty()) kit::write_file(options.json, json(drift));
+  co_await measure_drift(request, kinds, trips, driver.progress(), drift);
+  driver.progress().clear();
+  print(
+      fmt::format("{0} -> {1} -> {0}, one pair of handles, on {2}\n", request.source,
+                  request.target, machine().describe()),
+      drift_rows().table(drift.rows),
+      "L2, Linf: of the difference to the start (L2 relative); L2 kept: the norm as a part of "
+      "that at the start;\nintegral: by the row sums of the mass matrix; change: as a part of the "
+      "integral of |field|\n");
+  write(driver, options.plot, {"drift", drift_rows().csv(drift.rows), pictures_of(drift.rows)},
+        drift_rows().json(drift.rows), {{"trip_seconds", drift.trip_seconds}});
 }
 
 /// Throws Error (bad_argument) if a mesh of the result, or a part of one, would replace a file of
 /// the run. Their names are known when the meshes are.
-void refuse_to_overwrite(kit::FileNames names, const std::string& out, const Problem& problem) {
+void refuse_to_overwrite(kit::FileNames& names, const std::string& out, const Problem& problem) {
   for (std::size_t m = 0; m < problem.meshes.size() && !out.empty(); ++m) {
     if (!is_written(m, problem.pairs)) continue;
     const std::string path = path_of_result(out, m, problem.meshes.size(), problem.pairs);
@@ -99,151 +92,230 @@ void refuse_to_overwrite(kit::FileNames names, const std::string& out, const Pro
   }
 }
 
-Task transfer_once(const DriverOptions& options, const kit::FileNames& names,
-                   kit::Progress& progress) {
-  const Request request = single_request(options);
-  kit::require_writable("--json", options.json);
-  kit::require_writable("--out", options.out);
-  require_result_format(options.out);
+void write_reports(const kit::Driver& driver, const Reports& reports) {
+  driver.write(field_rows().json(rows_of(reports)), {{"definitions", definitions()}});
+}
+
+void explain_to_user(kit::Driver& driver, const std::string& text) {
+  if (!driver.explains()) return;
+  driver.progress().clear();
+  print(text);
+}
+
+Task transfer_once(const Options& options, kit::Driver& driver) {
+  Request request = options.request;
+  request.repeat = options.repeat.value_or(1);
+  const std::string& out = options.request.out;
+  kit::require_writable("--out", out);
+  require_result_format(out);
   kit::require_picture("--picture", options.picture);
-  Problem problem = co_await read(request, progress);
-  refuse_to_overwrite(names, options.out, problem);
-  const bool in_parts = is_pvtu(options.out);
-  if (in_parts) problem.parts_path = options.out;
-  const bool writes_whole = !options.out.empty() && !in_parts;
+  Problem problem = co_await read(request, driver.progress());
+  refuse_to_overwrite(driver.files(), out, problem);
+  const bool in_parts = is_pvtu(out);
+  if (in_parts) problem.parts_path = out;
+  const bool writes_whole = !out.empty() && !in_parts;
   problem.collects = writes_whole || !options.picture.empty();
-  if (options.explain) {
-    progress.clear();
-    print(explain(problem, options.out.empty() ? Output::report : Output::mesh));
-  }
-  const auto gauge = create_group<Gauge>();
-  co_await measure(problem, gauge, progress);
-  progress.phase("writing");
+  explain_to_user(driver, explain(problem, out.empty() ? Output::report : Output::mesh));
+  co_await measure(problem, create_group<Gauge>(), driver.progress());
+  driver.progress().phase("writing");
   if (problem.collects) bring_targets(problem);
-  if (!options.json.empty()) kit::write_file(options.json, json(problem.reports));
+  write_reports(driver, problem.reports);
   if (!options.picture.empty()) kit::write_file(options.picture, picture(problem));
-  if (writes_whole) write_meshes(options.out, problem);
-  progress.clear();
+  if (writes_whole) write_meshes(out, problem);
+  driver.progress().clear();
   std::string text;
   for (const TransferReport& report : problem.reports) text += table(report);
   print(text + legend());
 }
 
 /// Every kind, one after the other, from the same meshes and fields.
-Task transfer_all_kinds(const DriverOptions& options, kit::Progress& progress) {
-  Request request = single_request(options);
-  const std::vector<TransferKind> kinds = kinds_of(options);
-  kit::require_writable("--json", options.json);
+Task transfer_all_kinds(const Options& options, kit::Driver& driver) {
+  Request request = options.request;
+  request.repeat = options.repeat.value_or(1);
+  const std::vector<TransferKind> kinds = kinds_of(driver, options);
   request.kind = name_of(kinds.front());
-  const Problem read_once = co_await read(request, progress);
+  const Problem read_once = co_await read(request, driver.progress());
   const auto gauge = create_group<Gauge>();
-  std::vector<TransferReport> reports;
+  Reports reports;
   for (const TransferKind kind : kinds) {
-    progress.part(reports.size() / read_once.pairs.size() + 1, kinds.size());
+    driver.progress().part(reports.size() / read_once.pairs.size() + 1, kinds.size());
     Problem problem = read_once;
     problem.kind = kind;
     for (TransferReport& report : problem.reports) report.kind = name_of(kind);
-    if (options.explain) {
-      progress.clear();
-      print(name_of(kind), ": ", explain(problem, Output::report));
-    }
-    co_await measure(problem, gauge, progress);
+    explain_to_user(driver, text(name_of(kind), ": ", explain(problem, Output::report)));
+    co_await measure(problem, gauge, driver.progress());
     for (TransferReport& report : problem.reports) reports.push_back(std::move(report));
   }
-  if (!options.json.empty()) kit::write_file(options.json, json(reports));
-  progress.clear();
-  print(kinds_table(reports));
+  write_reports(driver, reports);
+  driver.progress().clear();
+  print(fmt::format("every kind on {}, {} chares per mesh\n", machine().describe(),
+                    read_once.chares()),
+        field_rows().table(rows_of(reports)),
+        "errors over all vertices, and over those found; integral: that over the target without "
+        "that over the source\n");
 }
 
-Task run_study(const DriverOptions& options, kit::Progress& progress, bool& failed) {
-  kit::require_writable("--json", options.json);
+std::string folder_of(const Options& options) {
+  std::string folder = options.plot.empty() ? "study" : options.plot;
+  kit::make_folder("--plot", folder);
+  return folder;
+}
+
+Task run_study(const Options& options, kit::Driver& driver) {
   std::vector<std::string> kinds{options.request.kind};
-  if (*options.study == "kind" || wants_all_kinds(options)) {
+  if (options.study == "kind" || options.request.kind == "all") {
     kinds.clear();
-    for (const TransferKind kind : kinds_of(options)) kinds.emplace_back(name_of(kind));
+    for (const TransferKind kind : kinds_of(driver, options)) kinds.emplace_back(name_of(kind));
   }
   std::vector<Request> requests = plan_study(options.request, options.policies, kinds);
-  const std::string folder = options.plot.empty() ? "study" : options.plot;
-  kit::make_folder("--plot", folder);
+  const std::string folder = folder_of(options);
+  const std::int32_t repeat = options.repeat.value_or(3);
   const auto gauge = create_group<Gauge>();
-  std::vector<TransferReport> reports;
+  Reports reports;
   for (Request& request : requests) {
-    progress.part(reports.size() + 1, requests.size());
-    request.repeat = options.repeat.value_or(3);
-    Problem problem = co_await read(request, progress);
-    if (options.explain) {
-      progress.clear();
-      print(explain(problem, Output::report));
-    }
-    co_await measure(problem, gauge, progress);
+    driver.progress().part(reports.size() + 1, requests.size());
+    request.repeat = repeat;
+    Problem problem = co_await read(request, driver.progress());
+    explain_to_user(driver, explain(problem, Output::report));
+    co_await measure(problem, gauge, driver.progress());
     reports.push_back(problem.reports.front());
   }
-  progress.clear();
+  driver.progress().clear();
+  const std::vector<FieldRow> rows = rows_of(reports);
+  const std::vector<Trend> orders = trends(reports);
   // A point that snaps by the tolerance has the value of another place.
-  const Study study{std::move(reports), options.repeat.value_or(3),
-                    *options.study == "kind" && options.request.tolerance == 0};
-  print(table(study));
-  std::vector<Check> rows;
-  if (study.is_checked) rows = checks(study);
-  if (!rows.empty()) print(table(rows));
-  print(write(study, folder));
-  if (!options.json.empty()) kit::write_file(options.json, json(study));
-  failed = !all_ok(rows);
-  if (failed) print(failures(rows));
+  std::vector<Check> held;
+  if (options.study == "kind" && options.request.tolerance == 0) held = checks(reports);
+  print(fmt::format("study of {} transfers, each the fastest of {}, on {}\n", reports.size(),
+                    repeat, machine().describe()),
+        field_rows().table(rows),
+        "L2: sqrt(sum m e^2), m the lumped mass; Linf: max |e|; over all vertices of the target, "
+        "and over those found\n",
+        held.empty() ? "" : check_rows().table(held),
+        "fitted powers (over all): error ~ edge^p, error ~ seconds^q; exact: relative L2 below "
+        "1e-12 everywhere\n",
+        trend_rows().table(orders));
+  write(driver, folder, {"study", field_rows().csv(rows), pictures_of(reports)},
+        field_rows().json(rows),
+        {{"definitions", definitions()},
+         {"trends", trend_rows().json(orders)},
+         {"checks", check_rows().json(held)}});
+  const std::string failed = failures(held);
+  print(failed);
+  if (!failed.empty()) tess::exit(1);
 }
 
-Task run_steps_study(const DriverOptions& options, kit::Progress& progress, bool& failed) {
-  kit::require_writable("--json", options.json);
-  Request request = options.request;
-  request.policy = options.policies.front();
-  const std::vector<Request> requests = plan_study(request, {request.policy}, {request.kind});
-  const std::string folder = options.plot.empty() ? "study" : options.plot;
-  kit::make_folder("--plot", folder);
+Task run_steps_study(const Options& options, kit::Driver& driver) {
+  const Request& request = options.request;
+  const std::vector<Request> requests = plan_study(request, options.policies, {request.kind});
+  const std::string folder = folder_of(options);
   std::vector<StepsRow> rows;
   for (const Request& one : requests) {
-    Problem problem = co_await read(one, progress);
-    co_await measure_steps(problem, options.repeat.value_or(3), progress, rows);
+    Problem problem = co_await read(one, driver.progress());
+    co_await measure_steps(problem, options.repeat.value_or(3), driver.progress(), rows);
   }
-  progress.clear();
-  print(table(rows));
-  failed = !std::ranges::all_of(rows, &StepsRow::ok);
-  print(write(rows, folder));
-  if (!options.json.empty()) kit::write_file(options.json, json(rows));
+  driver.progress().clear();
+  print(steps_rows().table(rows),
+        "kept: one search, then the steps; again: a search in every step\n");
+  write(driver, folder, {"steps", steps_rows().csv(rows), {picture_of(rows)}},
+        steps_rows().json(rows));
+  if (!std::ranges::all_of(rows, &StepsRow::ok)) tess::exit(1);
 }
 
-Mode mode_of(const DriverOptions& options) {
-  const bool trips = !options.round_trips.empty();
-  if (moves_file_fields(options)) {
-    if (trips) tess::refuse_together("--round-trips " + options.round_trips, "fields of files");
-    return Mode::files;
+/// The machines are no part of a run, since each has a process. Returns the exit code.
+int run_pes_study(const Options& options, const tess::Setup& setup, const char* program,
+                  kit::Driver& driver) {
+  if (setup.machine->n_processes() != 1 || setup.machine->virtual_time())
+    fail(ErrorCode::bad_argument,
+         "--study pes simulates its machines; leave out mpirun and --sim (--machines and "
+         "--network describe them)");
+  Request request = options.request;
+  request.repeat = options.repeat.value_or(3);
+  const std::vector<SimulatedOptions> machines = machines_of(options.pes, options.sim);
+  kit::make_folder("--plot", options.plot);
+  std::vector<PesRow> rows;
+  print(request.source, " -> ", request.target, ", simulated, ", options.sim, "\n",
+        pes_rows().head());
+  for (const SimulatedOptions& machine : machines) {
+    driver.progress().phase("measuring");
+    driver.progress().part(rows.size() + 1, machines.size());
+    PesRow row;
+    if (const int code = measure(program, request, setup.options, machine, row); code != 0)
+      return code;
+    const PesRow& first = rows.empty() ? row : rows.front();
+    row.speed_up = first.together() / row.together();
+    row.efficiency = row.speed_up * first.pes / row.pes;
+    rows.push_back(row);
+    driver.progress().clear();
+    print(pes_rows().line(row));
   }
-  if (trips) return Mode::round_trips;
-  return options.study ? Mode::study : Mode::transfer;
+  write(driver, options.plot,
+        {"pes", pes_rows().csv(rows), {picture_of(rows, request.source + " to " + request.target)}},
+        pes_rows().json(rows));
+  for (const PesRow& row : rows)
+    if (!row.has_values_of(rows.front())) {
+      fmt::print(stderr, "m2m_transfer: {} PEs give other values than {}\n", row.pes,
+                 rows.front().pes);
+      return 1;
+    }
+  return 0;
+}
+
+/// The mode may follow from the fields of the source's file, and from values.
+void choose_mode(const Options& options, kit::Driver& driver) {
+  const FileFieldsRequest& request = options.request;
+  if (is_for_files(request))
+    request.from_weights.empty()
+        ? driver.enter(Mode::files, "fields and weights of files")
+        : driver.enter(Mode::from_weights,
+                       "--from-weights, which applies a matrix without a search");
+  if (request.kind != "all") return;
+  if (driver.mode() == Mode::run)
+    driver.enter(Mode::all_kinds, "--kind all, which has several results");
+  if (driver.mode() == Mode::files)
+    tess::refuse_together("--kind all", "fields and weights of files");
+  if ((driver.mode() & (Mode::steps | Mode::pes)) != 0)
+    tess::refuse_together("--kind all", "--study " + options.study);
+}
+
+Task run(const Options& options, kit::Driver& driver) {
+  choose_mode(options, driver);
+  switch (driver.mode()) {
+    case Mode::all_kinds:
+      return transfer_all_kinds(options, driver);
+    case Mode::files:
+    case Mode::from_weights:
+      return move_files(options, driver);
+    case Mode::round_trips:
+      return drift_table(options, driver);
+    case Mode::study:
+      return run_study(options, driver);
+    case Mode::steps:
+      return run_steps_study(options, driver);
+    default:
+      return transfer_once(options, driver);
+  }
 }
 
 }  // namespace
 
-int drive(Setup& setup, const DriverOptions& options) {
-  kit::Progress progress(setup.machine->process().value == 0 ? stderr : nullptr);
-  const kit::FileNames names = file_names(options, setup.options.trace);
-  bool failed = false;
-  const int code = tess::run(setup, [&]() -> Task {
-    const Mode mode = mode_of(options);
-    refuse_contradictions(options, mode);
-    switch (mode) {
-      case Mode::round_trips:
-        return drift_table(options, progress);
-      case Mode::files:
-        return move_file_fields(options, progress);
-      case Mode::study:
-        return options.study == "steps" ? run_steps_study(options, progress, failed)
-                                        : run_study(options, progress, failed);
-      default:
-        return wants_all_kinds(options) ? transfer_all_kinds(options, progress)
-                                        : transfer_once(options, names, progress);
-    }
-  });
-  return code == 0 && failed ? 1 : code;
+int start(tess::Setup& setup, int argc, char** argv) {
+  Options options;
+  kit::Driver driver(
+      setup, "Moves fields between two tetrahedral meshes, and prints the error and the time.");
+  if (!read_options(driver, options, argc, argv)) return 0;
+  const auto refuse_missing = [](const char* mesh) {
+    fail(ErrorCode::bad_argument, mesh,
+         " is missing; give a source and a target mesh (--help lists the arguments)");
+  };
+  if (options.request.source.empty()) refuse_missing("SOURCE");
+  if (options.request.target.empty() && (driver.mode() & (Mode::study | Mode::steps)) == 0)
+    refuse_missing("TARGET");
+  if (driver.mode() == Mode::pes) {
+    choose_mode(options, driver);
+    return run_pes_study(options, setup, argv[0], driver);
+  }
+  return tess::run(setup, [&] { return run(options, driver); });
 }
 
 }  // namespace m2m_transfer

@@ -1,6 +1,6 @@
 #include "apps/m2m_transfer/file_fields.hpp"
 
-#include "apps/kit/json.hpp"
+#include "apps/kit/rows.hpp"
 #include "apps/kit/write_file.hpp"
 #include "apps/m2m_transfer/input/lists.hpp"
 #include "apps/m2m_transfer/input/status_field.hpp"
@@ -189,9 +189,9 @@ Task transfer_batch(Run& run, const Batch& batch, std::vector<Field>& values,
   const PartitionMethod method = parse_partition_method(run.request.partition);
   DistributedMesh source, target;
   co_await epoch([&] {
-    source = scatter(run.source, batch.vertices.fields, run.request.n_chares, method,
+    source = scatter(run.source, batch.vertices.fields, run.request.chares(), method,
                      source_halo_layers(kind));
-    target = scatter(run.target, values, run.request.n_chares, method, target_halo_layers(kind));
+    target = scatter(run.target, values, run.request.chares(), method, target_halo_layers(kind));
   });
   Transfer transfer(source, target, run.options);
   const SearchSummary found = co_await transfer.search();
@@ -234,7 +234,7 @@ void apply_batch(const Run& run, const Batch& batch, std::vector<Field>& values)
 
 /// A search and one application of all fields in elements.
 TaskOf<CellOutcome> transfer_cell_batch(const Run& run, const Batch& batch) {
-  return transfer_cells(run.source, batch.cells.fields, run.target, run.request.n_chares,
+  return transfer_cells(run.source, batch.cells.fields, run.target, run.request.chares(),
                         parse_partition_method(run.request.partition), run.options);
 }
 
@@ -266,12 +266,6 @@ void read_matrix(Run& run, FileFieldsReport& report) {
 }
 
 void check_options(const FileFieldsRequest& request) {
-  if (request.target.empty())
-    fail(ErrorCode::bad_argument,
-         "TARGET is missing; give a source and a target mesh (--help lists the arguments)");
-  if (!request.weights.empty() && !request.from_weights.empty())
-    fail(ErrorCode::bad_argument,
-         "--weights writes weights and --from-weights reads them; give one");
   if (!request.weights.empty()) require_weights(parse_transfer_kind(request.kind), request.clamp);
   kit::require_writable("--weights", request.weights);
   kit::require_writable("--out", request.out);
@@ -420,9 +414,9 @@ std::string table(const FileFieldsReport& r) {
   return out;
 }
 
-std::string json(const FileFieldsReport& r) {
+kit::Json json_of(const FileFieldsReport& r) {
   kit::Json whole{{"source", r.source}, {"target", r.target}, {"fields", r.fields}};
-  whole.update(json_of(r.source_elements, r.target_elements));
+  whole["elements"] = json_of(r.source_elements, r.target_elements);
   if (r.searched)
     whole.update({{"inside", r.tally.counts[0]},
                   {"boundary", r.tally.counts[1]},
@@ -448,8 +442,8 @@ std::string json(const FileFieldsReport& r) {
                               {"time", step.time},
                               {"nan_vertices", step.n_nan},
                               {"nan_cells", step.n_nan_cells},
-                              {"result_hash", fmt::format("{:016x}", step.result_hash)}});
-  return kit::json_text(whole);
+                              {"result_hash", kit::hex(step.result_hash)}});
+  return whole;
 }
 
 }  // namespace m2m_transfer

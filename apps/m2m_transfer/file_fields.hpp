@@ -4,7 +4,9 @@
 // application.
 #pragma once
 
+#include "apps/kit/json.hpp"
 #include "apps/kit/progress.hpp"
+#include "apps/m2m_transfer/input/problem.hpp"
 #include "apps/m2m_transfer/names.hpp"
 #include "apps/m2m_transfer/report.hpp"
 #include "m2m/field.hpp"
@@ -19,20 +21,13 @@
 
 namespace m2m_transfer {
 
-/// The options, as on the command line.
-struct FileFieldsRequest {
-  std::string source{}, target{};
-  /// At vertices or in elements of the source file, or formulas; each may list several.
-  std::vector<std::string> fields{};
+/// The options, as on the command line. `fields`: at vertices or in elements of the source file, or
+/// formulas; each may list several.
+struct FileFieldsRequest : Request {
   std::string step{};          ///< a number, "all", or empty: the last one
   std::string weights{};       ///< file to write them to
   std::string from_weights{};  ///< file to read them from, in place of a search
   std::string out{};           ///< ExodusII with all steps, or .vtu with one
-  std::string policy = "keep", kind = "linear", partition = "curve";
-  std::int32_t n_chares = 8;  ///< per mesh
-  double voxel = 0;           ///< edge; 0: chosen
-  double tolerance = 0;       ///< length within which vertices snap to the source
-  bool clamp = false;         ///< keep values within those of the donor
 };
 
 struct MovedStep {
@@ -66,6 +61,7 @@ TaskOf<FileFieldsReport> move_file_fields(const FileFieldsRequest& request,
                                           kit::Progress& progress);
 
 [[nodiscard]] std::string table(const FileFieldsReport& report);
-[[nodiscard]] std::string json(const FileFieldsReport& report);
+/// One object.
+[[nodiscard]] kit::Json json_of(const FileFieldsReport& report);
 
 }  // namespace m2m_transfer

@@ -1,10 +1,12 @@
 #include "apps/m2m_transfer/options.hpp"
 
+#include "apps/m2m_transfer/input/lists.hpp"
+#include "apps/m2m_transfer/study/study.hpp"
 #include "m2m/transfer_kind.hpp"
-#include "runtime/command_line.hpp"
 #include "runtime/core/error.hpp"
 
 #include <filesystem>
+#include <set>
 
 namespace m2m_transfer {
 namespace {
@@ -17,122 +19,198 @@ std::string kind_names() {
   return out;
 }
 
-void add_options(tess::CommandLine& line, DriverOptions& options, std::string& study) {
-  Request& request = options.request;
-  line.option(
+/// One run of formulas, by one kind or by all.
+constexpr kit::Modes runs = Mode::run | Mode::all_kinds;
+constexpr kit::Modes studies = Mode::study | Mode::steps | Mode::pes;
+/// A search finds the donors, with options for it.
+constexpr kit::Modes searches = runs | studies | Mode::files | Mode::round_trips;
+constexpr kit::Modes file_modes = Mode::files | Mode::from_weights;
+
+void add_meshes(kit::Driver& driver, Request& request) {
+  driver.option(
       "SOURCE", request.source,
       "mesh: an ExodusII, gmsh (2.0 to 2.2, 4.1) or VTU file, or kuhn:N, a generated box of 6 N^3 "
       "tetrahedra");
-  line.option("TARGET", request.target, "mesh of the same kinds");
-  line.option("MORE", request.more, "further meshes of the same kinds, for --pairs");
+  driver.option("TARGET", request.target, "mesh of the same kinds");
+  driver.in(runs);
+  driver.option("MORE", request.more, "further meshes of the same kinds, for --pairs");
+}
 
-  line.group("Transfer");
-  line.option(
-      "--field,--fields NAMES", request.fields,
+void add_transfer(kit::Driver& driver, Options& options) {
+  FileFieldsRequest& request = options.request;
+  driver.group("Transfer");
+  driver.in(searches | Mode::from_weights);
+  driver.option(
+      "--fields,--field NAMES", request.fields,
       "gaussian, linear, sin, an expression in x, y, z, or a field of the source file at vertices "
       "or in elements (moved to the target's elements); several as --fields sin,x*y");
-  line.option(
+  driver.in(searches);
+  driver.option(
       "--kind KIND", request.kind,
       "how values follow from the source: " + kind_names() + "; all: a table with a row per kind");
-  line.option("--pairs A:B,B:C", request.pairs,
+  driver.in(runs);
+  driver
+      .option("--pairs A:B,B:C", request.pairs,
               "which mesh gives values to which, by letter (A is SOURCE, B is TARGET) or file. "
               "Pairs run in the order given where they share a mesh that is written, otherwise at "
               "once")
       .joined_by(',');
-  line.option("--policy POLICY", options.policies,
-              "value of vertices outside the source: keep, value:V or nearest");
-  line.option("--tolerance LENGTH", request.tolerance,
-              "vertices outside the source but nearer than this snap to it");
-  line.flag("--clamp", request.clamp, "keep values within those of the donor's vertices");
-  line.option("--steps", request.steps,
+  driver.in(Mode::all);
+  driver.option("--policy POLICY", options.policies,
+                "value of vertices outside the source: keep, value:V or nearest");
+  driver.in(searches);
+  driver.option("--tolerance LENGTH", request.tolerance,
+                "vertices outside the source but nearer than this snap to it");
+  driver.flag("--clamp", request.clamp, "keep values within those of the donor's vertices");
+  driver.in(runs);
+  driver
+      .option("--steps", request.steps,
               "applications of all pairs, with the donors of one search; the time of the fastest "
               "counts")
       .between(1, 1000000);
-  line.option("--move MOTION", request.moves,
-              "move a mesh before every step but the first, and search again: "
-              "'B:rotate(0,0,1,5deg)' about its middle, 'B:rotate(0,0,1,5deg,0,0,0)' about a "
-              "point, or 'B:translate(0.1,0,0)'; repeat for several");
-  line.option("--step N|all", options.step,
-              "step of the fields that the source file has, from 0 on, or all (default: the last); "
-              "--out then holds all steps");
-  line.option("--from-weights FILE", options.from_weights,
-              "transfer with the weights of this file, without a search");
+  driver.option("--move MOTION", request.moves,
+                "move a mesh before every step but the first, and search again: "
+                "'B:rotate(0,0,1,5deg)' about its middle, 'B:rotate(0,0,1,5deg,0,0,0)' about a "
+                "point, or 'B:translate(0.1,0,0)'; repeat for several");
+  driver.in(file_modes);
+  driver.option("--step N|all", request.step,
+                "step of the fields that the source file has, from 0 on, or all (default: the "
+                "last); --out then holds all steps");
+  driver.option("--from-weights FILE", request.from_weights,
+                "transfer with the weights of this file, without a search");
+  driver.enters("--step", Mode::files);
+  driver.enters("--from-weights", Mode::files);
+}
 
-  line.group("Chares");
-  line.option("--chares", request.n_chares,
+void add_chares(kit::Driver& driver, Request& request) {
+  driver.group("Chares");
+  driver.in(searches);
+  driver
+      .option("--chares", request.n_chares,
               "chares per mesh (default: --per-pe times the number of PEs)")
       .between(1, 1 << 20);
-  line.option("--per-pe", request.per_pe, "chares per mesh and PE").between(1, 1 << 20);
-  line.option("--partition METHOD", request.partition,
-              "how the meshes are cut into chares: curve (by all PEs together), rcb or hsfc");
-  line.option("--voxel LENGTH", request.voxel, "edge of a voxel (default: chosen from the meshes)")
+  driver.option("--per-pe", request.per_pe, "chares per mesh and PE").between(1, 1 << 20);
+  driver
+      .option("--voxel LENGTH", request.voxel, "edge of a voxel (default: chosen from the meshes)")
       .positive();
+  driver.in(searches | Mode::stability);
+  driver.option("--partition METHOD", request.partition,
+                "how the meshes are cut into chares: curve (by all PEs together), rcb or hsfc");
+}
 
-  line.group("Output");
-  line.option(
-      "--out FILE", options.out,
+void add_output(kit::Driver& driver, Options& options) {
+  driver.group("Output");
+  driver.in(Mode::run | file_modes);
+  driver.option(
+      "--out FILE", options.request.out,
       "write the target mesh with the fields and the status (transfer_status if a field is called "
       "status): ExodusII if it ends in .exo, .e, "
       ".ex2, .g, .exii, .gen or .ncdf, VTU if in .vtu, VTU written by all processes, a file per "
       "chare, if in .pvtu; with several targets to FILE.B.exo, FILE.C.exo");
-  line.option("--weights FILE", options.weights,
-              "write the weights of the transfer (NetCDF, ESMF's layout)");
-  line.option("--picture FILE", options.picture,
-              "draw the first field and its error in a cut through the target, as SVG");
-  line.option("--json FILE", options.json, "write the report as JSON");
-  line.flag("--explain", options.explain, "print what this transfer uses and what it leaves out");
+  driver.in(Mode::files);
+  driver.option("--weights FILE", options.request.weights,
+                "write the weights of the transfer (NetCDF, ESMF's layout)");
+  driver.enters("--weights", Mode::files);
+  driver.in(Mode::run);
+  driver.option("--picture FILE", options.picture,
+                "draw the first field and its error in a cut through the target, as SVG");
+  driver.json("write the report as JSON");
+  driver.in(runs | Mode::study);
+  driver.explain("print what this transfer uses and what it leaves out");
+}
 
-  line.group("Studies");
-  line.option(
-          "--repeat", options.repeat,
-          "number of transfers; the times are those of the fastest (default: 1, with --study 3)")
+void add_studies(kit::Driver& driver, Options& options) {
+  driver.group("Studies");
+  driver.in(runs | studies);
+  driver
+      .option("--repeat", options.repeat,
+              "number of transfers; the times are those of the fastest (default: 1, with --study "
+              "3)")
       .between(1, 1000000);
-  line.option("--study WHAT", study,
+  driver.in(studies);
+  driver
+      .option("--study WHAT", options.study,
               "h: error against run time over several meshes (default); kind: the same for every "
-              "kind; steps: the time that kept donors save. SOURCE and TARGET can be ladders such "
+              "kind; steps: the time that kept donors save; pes: run time on simulated machines of "
+              "more and more PEs. SOURCE and TARGET can be ladders such "
               "as kuhn:8,16,32@0.2 or a.msh,b.msh; --policy can be repeated. A folder (as --plot; "
               "./NAME if it is new) or a ladder without TARGET can stand in place of h")
       .takes(0, 1);
-  line.option("--round-trips N,N,…", options.round_trips,
-              "SOURCE to TARGET and back with one pair of handles, and the drift after so many "
-              "trips; for all kinds, or the --kind given");
-  line.option("--plot DIR", options.plot,
-              "write the table of --study or --round-trips as CSV, JSON and SVG to this folder");
-  line.flag("--stability", options.stability,
-            "extreme meshes and points, and the same of SOURCE and TARGET where they are given: "
-            "points lost, error, bits; exit code 1 if a row fails; --policy and --partition "
-            "(default: rcb) hold for every case");
+  driver.enters("--study", Mode::study);
+  driver.enters("--study", Mode::steps, "steps");
+  driver.enters("--study", Mode::pes, "pes");
+  driver.in(Mode::pes);
+  driver.option("--machines N,N,…", options.pes, "PEs of the machines of --study pes")
+      .separated_by(',')
+      .between(1, 1 << 20);
+  driver.option("--network KEYS", options.sim, "what else --sim would say of these machines");
+  driver.in(Mode::round_trips);
+  driver.option("--round-trips N,N,…", options.round_trips,
+                "SOURCE to TARGET and back with one pair of handles, and the drift after so many "
+                "trips; for all kinds, or the --kind given");
+  driver.enters("--round-trips", Mode::round_trips);
+  driver.in(studies | Mode::round_trips);
+  driver.option("--plot DIR", options.plot,
+                "write the table of --study or --round-trips as CSV, JSON and SVG to this folder");
+  driver.stability(
+      "extreme meshes and points, and the same of SOURCE and TARGET where they are given: points "
+      "lost, error, bits; --policy and --partition (default: rcb) hold for every case");
 }
 
 /// What follows `--study`: the name of a study, a ladder of meshes or the folder of `--plot`.
-void read_study(const std::string& study, DriverOptions& options) {
-  const bool is_named = study == "h" || study == "kind" || study == "steps";
-  const bool is_ladder = study.starts_with("kuhn:") && options.request.source.empty();
+void read_study(Options& options) {
+  const std::string given = options.study;
+  const bool is_named = given == "h" || given == "kind" || given == "steps" || given == "pes";
+  const bool is_ladder = given.starts_with("kuhn:") && options.request.source.empty();
   // A folder has a '/' unless it is there already: a word may be the name of a study, mistyped.
-  if (!is_named && !is_ladder && !study.empty() && study.find('/') == std::string::npos &&
-      !std::filesystem::is_directory(study))
-    fail(ErrorCode::bad_argument, "--study ", study,
-         ": is none of h, kind and steps, and no folder "
+  if (!is_named && !is_ladder && !given.empty() && given.find('/') == std::string::npos &&
+      !std::filesystem::is_directory(given))
+    fail(ErrorCode::bad_argument, "--study ", given,
+         ": is none of h, kind, steps and pes, and no folder "
          "of this name is there; name a new folder ./",
-         study);
-  if (is_ladder) options.request.source = study;
-  if (!is_named && !is_ladder && options.plot.empty()) options.plot = study;
-  options.study = is_named ? study : "h";
+         given);
+  if (is_ladder) options.request.source = given;
+  if (!is_named && !is_ladder && options.plot.empty()) options.plot = given;
+  if (!is_named) options.study = "h";
+}
+
+/// What the modes do not say.
+void check_values(const kit::Driver& driver, const Options& options) {
+  const Request& request = options.request;
+  driver.refuse_both("--chares", "--per-pe");
+  if (request.steps == 1) driver.line().refuse_without("--steps above 1", {"--move"});
+  if (options.policies.size() > 1 && driver.mode() != Mode::study)
+    fail(ErrorCode::bad_argument, "--policy is given more than once; give it once, or add --study");
+  std::set<std::string> names;
+  for (const std::string& name : split_names(request.fields))  // results are written by name
+    if (!names.insert(name).second)
+      fail(ErrorCode::bad_argument, "--fields: ", name, " is given twice; give it once");
+}
+
+void take_files(kit::FileNames& files, const Options& options) {
+  const FileFieldsRequest& request = options.request;
+  for (const std::string& mesh : request.more) files.reads("a mesh", mesh);
+  for (const std::string& mesh : expand(request.source)) files.reads("SOURCE", mesh);
+  for (const std::string& mesh : expand(request.target)) files.reads("TARGET", mesh);
+  files.reads("--from-weights", request.from_weights);
+  files.writes("--out", request.out);
+  files.writes("--picture", options.picture);
+  files.writes("--weights", request.weights);
 }
 
 }  // namespace
 
-bool read_options(tess::CommandLine& line, DriverOptions& options, int argc, char** argv) {
-  std::string study;
-  add_options(line, options, study);
-  if (!line.parse(argc, argv)) return false;
-  options.line = &line;
-  options.kind_is_given = line.is_given("--kind");
-  options.partition_is_given = line.is_given("--partition");
-  if (line.is_given("--chares") && line.is_given("--per-pe"))
-    fail(ErrorCode::bad_argument, "--chares ", options.request.n_chares, " and --per-pe ",
-         options.request.per_pe, " both say how many chares there are; give one");
-  if (line.is_given("--study")) read_study(study, options);
+bool read_options(kit::Driver& driver, Options& options, int argc, char** argv) {
+  add_meshes(driver, options.request);
+  add_transfer(driver, options);
+  add_chares(driver, options.request);
+  add_output(driver, options);
+  add_studies(driver, options);
+  if (!driver.parse(argc, argv)) return false;
+  if (driver.is_given("--study")) read_study(options);
+  check_values(driver, options);
+  take_files(driver.files(), options);
+  options.request.policy = options.policies.front();
   return true;
 }
 

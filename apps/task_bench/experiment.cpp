@@ -56,7 +56,7 @@ tess::Task Bench::run(std::optional<std::int64_t> iterations, double* seconds) {
     Run run;
     run.iterations = iterations.value_or(graphs_[k].kernel.iterations);
     run.sync_every = settings_.sync_every;
-    if (settings_.spoiled) run.spoiled = {settings_.spoiled->first, settings_.spoiled->second};
+    if (!settings_.spoiled.empty()) run.spoiled = {settings_.spoiled[0], settings_.spoiled[1]};
     run.virtual_time = is_virtual() ? 1 : 0;
     run.done = done.emplace_back().callback();
     columns_[k].broadcast<&Column::begin>(run);
@@ -139,13 +139,13 @@ tess::Task Bench::measure_all(Result* result) {
 
 }  // namespace
 
-tess::Task run_all(const Settings& settings, void (*tell)(const Settings&, const Result&),
+tess::Task run_all(const Settings& settings, const std::function<void(const Result&)>& tell,
                    std::vector<Result>& results) {
   for (const std::vector<Graph>& graphs : cases(settings)) {
     Bench bench(settings, graphs);
     Result result;
     co_await bench.measure_all(&result);
-    tell(settings, result);
+    tell(result);
     results.push_back(std::move(result));
   }
 }

@@ -6,6 +6,7 @@
 #include "apps/task_bench/metg.hpp"
 #include "apps/task_bench/settings.hpp"
 
+#include <functional>
 #include <vector>
 
 namespace task_bench {
@@ -20,7 +21,7 @@ struct Result {
 
 /// Runs all cases, on PE 0, and reports each through `tell`. Ends the run with exit code 1 if the
 /// columns did not run the tasks of the graphs.
-tess::Task run_all(const Settings& settings, void (*tell)(const Settings&, const Result&),
+tess::Task run_all(const Settings& settings, const std::function<void(const Result&)>& tell,
                    std::vector<Result>& results);
 
 }  // namespace task_bench

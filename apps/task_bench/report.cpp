@@ -1,26 +1,76 @@
 #include "apps/task_bench/report.hpp"
 
-#include "apps/kit/chart.hpp"
-#include "apps/kit/json.hpp"
-#include "apps/kit/write_file.hpp"
-
+#include <algorithm>
 #include <fmt/format.h>
 
 namespace task_bench {
 namespace {
 
-constexpr const char* metg_line = "{:<22} {:<14} {:>7} {:>7} {:>5} {:>6} {:>12} {:>12} {:>7}\n";
-
-/// Rounds to six digits: more are noise and make the file harder to read.
-double rounded(double value) {
-  return std::stod(fmt::format("{:.6g}", value));
-}
+using kit::Json, kit::rounded;
 
 std::string microseconds(double seconds) {
   return fmt::format("{:.4g}", 1e6 * seconds);
 }
+double grain_us(const Row& row) {
+  return 1e6 * row.grain_seconds;
+}
 
-void print_run(const Result& result) {
+constexpr kit::Column<Row> of_a_grain[] = {
+    {"type", "", nullptr, kit::of<&Row::type>},
+    {"kernel", "", nullptr, kit::of<&Row::kernel>},
+    {"width", "", nullptr, kit::of<&Row::width>},
+    {"steps", "", nullptr, kit::of<&Row::steps>},
+    {"pes", "", nullptr, kit::of<&Row::pes>},
+    {"ranks", "", nullptr, kit::of<&Row::ranks>},
+    {"iterations", "", nullptr, kit::of<&Row::iterations>},
+    {"tasks", "", nullptr, kit::of<&Row::n_tasks>},
+    {"dependences", "", nullptr, kit::of<&Row::n_dependences>},
+    {"grain_us", "", nullptr, [](const Row& r) { return rounded(grain_us(r)); }},
+    {"seconds", "", nullptr, [](const Row& r) { return rounded(r.seconds); }},
+    {"efficiency", "", nullptr, [](const Row& r) { return rounded(r.efficiency); }}};
+const kit::Rows<Row>& grains() {
+  static const kit::Rows<Row> rows(of_a_grain);
+  return rows;
+}
+
+using R = const Result&;
+const Row& first(R result) {
+  return result.rows.front();
+}
+/// A figure of METG as the table has it.
+template <double Metg::*seconds>
+Json shown(R result) {
+  if (!result.metg) return "none";
+  return (result.metg->below ? "<" : "") + microseconds((*result.metg).*seconds);
+}
+template <double Metg::*seconds>
+Json us(R result) {
+  return result.metg ? rounded(1e6 * ((*result.metg).*seconds)) : Json();
+}
+
+constexpr kit::Column<Result> columns[] = {
+    {"type", "type", "<22", [](R r) -> Json { return first(r).type; }},
+    {"kernel", "kernel", "<14", [](R r) -> Json { return first(r).kernel; }},
+    {"width", "width", "7", [](R r) -> Json { return first(r).width; }},
+    {"steps", "steps", "7", [](R r) -> Json { return first(r).steps; }},
+    {"pes", "PEs", "5", [](R r) -> Json { return first(r).pes; }},
+    {"ranks", "ranks", "6", [](R r) -> Json { return first(r).ranks; }},
+    {"", "METG us", "12", shown<&Metg::grain_seconds>},
+    {"metg_us", "", nullptr, us<&Metg::grain_seconds>},
+    {"", "wall us", "12", shown<&Metg::wall_seconds>},
+    {"metg_wall_us", "", nullptr, us<&Metg::wall_seconds>},
+    {"metg_is_upper_bound", "", nullptr, [](R r) -> Json { return r.metg && r.metg->below; }},
+    {"", "grains", "7", [](R r) -> Json { return r.rows.size(); }},
+    {"grains", "", nullptr, [](R r) { return grains().json(r.rows); }}};
+
+}  // namespace
+
+const kit::Rows<Result>& report() {
+  static const kit::Rows<Result> rows(columns);
+  return rows;
+}
+
+std::string run_text(const Result& result) {
   const Row& row = result.rows.front();
   std::uint64_t n_flops = 0, n_bytes = 0;
   for (const Graph& graph : result.graphs) {
@@ -45,30 +95,7 @@ void print_run(const Result& result) {
     text += fmt::format("Balance Rounds {}, {} columns moved, max/average {:.3f} -> {:.3f}\n",
                         rounds.size(), n_moved, rounds.front().before, rounds.back().before);
   }
-  tess::print_text(text);
-}
-
-}  // namespace
-
-void print_head(const Settings& settings, const tess::Machine& machine) {
-  tess::print_text(machine.describe() + "\n");
-  if (!settings.metg) return;
-  tess::print_text(fmt::format(fmt::runtime(metg_line), "type", "kernel", "width", "steps", "PEs",
-                               "ranks", "METG us", "wall us", "grains"));
-}
-
-void print_result(const Settings& settings, const Result& result) {
-  if (!settings.metg) {
-    print_run(result);
-    return;
-  }
-  const Row& row = result.rows.front();
-  const auto& metg = result.metg;
-  const char* below = metg && metg->below ? "<" : "";
-  tess::print_text(
-      fmt::format(fmt::runtime(metg_line), row.type, row.kernel, row.width, row.steps, row.pes,
-                  row.ranks, metg ? below + microseconds(metg->grain_seconds) : "none",
-                  metg ? below + microseconds(metg->wall_seconds) : "none", result.rows.size()));
+  return text;
 }
 
 std::string explain(const Settings& settings) {
@@ -90,66 +117,29 @@ std::string explain(const Settings& settings) {
   return text;
 }
 
-void write_json(const std::string& path, const std::vector<Result>& results,
-                const std::string& machine) {
-  kit::Json all = kit::Json::array();
-  for (const Result& result : results) {
-    const Row& first = result.rows.front();
-    kit::Json rows = kit::Json::array();
-    for (const Row& row : result.rows)
-      rows.push_back({{"iterations", row.iterations},
-                      {"grain_us", rounded(1e6 * row.grain_seconds)},
-                      {"seconds", rounded(row.seconds)},
-                      {"tasks", row.n_tasks},
-                      {"dependences", row.n_dependences},
-                      {"efficiency", rounded(row.efficiency)}});
-    kit::Json one = {
-        {"type", first.type},     {"kernel", first.kernel},  {"width", first.width},
-        {"steps", first.steps},   {"pes", first.pes},        {"ranks", first.ranks},
-        {"metg_us", nullptr},     {"metg_wall_us", nullptr}, {"metg_is_upper_bound", false},
-        {"rows", std::move(rows)}};
-    if (result.metg) {
-      one["metg_us"] = rounded(1e6 * result.metg->grain_seconds);
-      one["metg_wall_us"] = rounded(1e6 * result.metg->wall_seconds);
-      one["metg_is_upper_bound"] = result.metg->below;
-    }
-    all.push_back(std::move(one));
-  }
-  const kit::Json file = {{"machine", machine}, {"results", std::move(all)}};
-  kit::write_file(path, kit::json_text(file));
-}
-
-void write_csv(const std::string& path, const std::vector<Result>& results) {
-  std::string text =
-      "type,kernel,width,steps,pes,ranks,iterations,tasks,dependences,grain_us,seconds,"
-      "efficiency\n";
+std::string csv_of(const std::vector<Result>& results) {
+  std::vector<Row> all;
   for (const Result& result : results)
-    for (const Row& row : result.rows)
-      text += fmt::format("{},{},{},{},{},{},{},{},{},{:.6g},{:.6g},{:.6g}\n", row.type, row.kernel,
-                          row.width, row.steps, row.pes, row.ranks, row.iterations, row.n_tasks,
-                          row.n_dependences, 1e6 * row.grain_seconds, row.seconds, row.efficiency);
-  kit::write_file(path, text);
+    all.insert(all.end(), result.rows.begin(), result.rows.end());
+  return grains().csv(all);
 }
 
-void draw(const std::string& path, const std::vector<Result>& results) {
-  const Row& first = results.front().rows.front();
-  kit::Chart chart{.title = fmt::format("Task Bench, {} PEs on {} ranks", first.pes, first.ranks),
+kit::Chart chart_of(const std::vector<Result>& results) {
+  const Row& one = first(results.front());
+  kit::Chart chart{.title = fmt::format("Task Bench, {} PEs on {} ranks", one.pes, one.ranks),
                    .x_label = "kernel of one task, us",
                    .y_label = "efficiency",
                    .x_log = true};
   double least = 1e300, most = 0;
-  for (const Result& result : results) {
-    kit::Series series{.name = result.rows.front().type};
+  for (const Result& result : results)
     for (const Row& row : result.rows) {
-      series.points.push_back({1e6 * row.grain_seconds, row.efficiency});
-      least = std::min(least, 1e6 * row.grain_seconds);
-      most = std::max(most, 1e6 * row.grain_seconds);
+      kit::add_point(chart, row.type, grain_us(row), row.efficiency);
+      least = std::min(least, grain_us(row));
+      most = std::max(most, grain_us(row));
     }
-    chart.series.push_back(std::move(series));
-  }
   chart.series.push_back(
       {.name = "one half", .points = {{least, 0.5}, {most, 0.5}}, .style = kit::Style::dashes});
-  (void)kit::write_svg(path, chart);
+  return chart;
 }
 
 }  // namespace task_bench

@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <limits>
 #include <string_view>
 
 namespace task_bench {
@@ -12,48 +11,6 @@ namespace {
 
 [[noreturn]] void refuse(const std::string& why) {
   tess::fail(tess::ErrorCode::bad_argument, why, " (--help lists the options)");
-}
-
-std::string help() {
-  return fmt::format(
-      R"(Task Bench (Slaughter et al., SC20): grids of tasks, one chare per column, inputs checked.
-Usage: task_bench [options of a graph] [-and options of the next graph]... [--options]
-
-Options of a graph (-and begins the next; all graphs run at once):
-  -steps N         steps (default 4; with -metg 1000)
-  -width N         points of a step (default 4; with -metg 16 per PE)
-  -type NAME       dependences (default trivial; with -metg stencil_1d): {}
-                   with -metg also: all
-  -radix N         dependences of a task: nearest, spread, random_nearest (default 3)
-  -period N        steps after which they repeat: spread, random_nearest (default 3)
-  -fraction X      share of the nearest that are dependences: random_nearest (default 0.25)
-  -kernel NAME     work of a task (default empty; with -metg compute_bound): {}
-  -iter N          iterations of the kernel (default 0); without -metg
-  -output N        bytes that a task hands on, at least 16 (default 16)
-  -scratch N       bytes that memory_bound works on, per point
-  -sample N        parts of the scratch, one per iteration (default 16)
-  -imbalance X     load_imbalance: iterations are drawn from (1 +- X/2) N, X within 0 ... 2
-  -persistent      load_imbalance: a point draws once, not at every step
-
-Measuring:
-  -metg            find METG(50 %): the least grain at which half of the time is kernels
-  --repeat N       runs of each grain, the median counts (default 1; with -metg 5)
-  --fastest        the fastest run counts: for a machine that others use as well
-  --json FILE      write the rows and METG as JSON
-  --csv FILE       write the rows as CSV
-  --plot FILE.svg  draw efficiency against the grain
-
-Load balancing:
-  --balance STRATEGY[,when=at_sync|automatic|periodic][,period=50ms][,report]
-                   columns migrate (README, Load balancing)
-  --balance-every N  steps between barriers (default 10)
-
-  --spoil T,P      task (T, P) hands on a wrong output: shows that it is found (exit code 1)
-  --explain        say what this run uses and what it left out
-  -h, --help       this text
-
-{})",
-      fmt::join(type_names(), ", "), fmt::join(kernel_names(), ", "), tess::options_help());
 }
 
 /// True if a graph has this task, and another task reads its output.
@@ -78,172 +35,171 @@ T number(std::string_view option, std::string_view value, T least, T most) {
 /// A graph as it is given, before defaults that depend on others.
 struct Given {
   Graph graph;
-  bool steps = false, width = false, type = false, kernel = false, period = false,
-       iterations = false;
+  kit::Json words;  // an object: value by option
+
+  [[nodiscard]] bool has(std::string_view option) const {
+    return std::ranges::find(words.members(), option, &kit::Json::Member::name) !=
+           words.members().end();
+  }
 };
 
-class Parser {
- public:
-  Parser(int argc, char** argv) : argv_(argv + 1, argv + argc) {}
-
-  [[nodiscard]] bool asks_for_help() const {
-    for (const std::string_view one : argv_)
-      if (one == "-h" || one == "--help") return true;
-    return false;
-  }
-
-  Settings run(std::int32_t n_pes) {
-    while (at_ < argv_.size()) {
-      option_ = argv_[at_++];
-      if (!of_graph() && !of_run()) refuse(fmt::format("there is no option {}", option_));
-    }
-    given_.push_back(next_);
-    complete(n_pes);
-    return std::move(settings_);
-  }
-
- private:
-  std::string_view value() {
-    if (at_ == argv_.size()) refuse(fmt::format("{} needs a value", option_));
-    return argv_[at_++];
-  }
-  template <class T>
-  T value(T least, T most) {
-    return number<T>(option_, value(), least, most);
-  }
-
-  bool of_graph() {
-    Graph& g = next_.graph;
-    constexpr std::int64_t gigabyte = std::int64_t{1} << 30;
-    if (option_ == "-steps") {
-      g.steps = value<std::int64_t>(1, 1'000'000'000);
-      next_.steps = true;
-    } else if (option_ == "-width") {
-      g.width = value<std::int32_t>(1, 100'000'000);
-      next_.width = true;
-    } else if (option_ == "-type") {
-      const std::string_view name = value();
-      settings_.all_types = settings_.all_types || name == "all";
-      if (name != "all") g.type = parse_type(name);
-      next_.type = true;
-    } else if (option_ == "-radix") {
-      g.radix = value<std::int32_t>(0, 1'000'000);
-    } else if (option_ == "-period") {
-      g.period = value<std::int32_t>(0, 1'000'000);
-      next_.period = true;
-    } else if (option_ == "-fraction") {
-      g.fraction = value<double>(0, 1);
-    } else if (option_ == "-kernel") {
-      g.kernel.type = parse_kernel(value());
-      next_.kernel = true;
-    } else if (option_ == "-iter") {
-      g.kernel.iterations = value<std::int64_t>(0, std::int64_t{1} << 40);
-      next_.iterations = true;
-    } else if (option_ == "-output") {
-      g.output_bytes = value<std::int64_t>(16, gigabyte);
-    } else if (option_ == "-scratch") {
-      g.kernel.scratch_bytes = value<std::int64_t>(0, 16 * gigabyte);
-    } else if (option_ == "-sample") {
-      g.kernel.samples = value<std::int64_t>(1, gigabyte);
-    } else if (option_ == "-imbalance") {
-      g.kernel.imbalance = value<double>(0, 2);
-    } else if (option_ == "-persistent") {
-      g.kernel.persistent = true;
-    } else if (option_ == "-and") {
-      given_.push_back(next_);
-      next_ = Given{};
-    } else {
-      return false;
-    }
-    return true;
-  }
-
-  bool of_run() {
-    if (option_ == "-metg") {
-      settings_.metg = true;
-    } else if (option_ == "--repeat") {
-      settings_.repeat = value<std::int32_t>(1, 1000);
-    } else if (option_ == "--fastest") {
-      settings_.fastest = true;
-    } else if (option_ == "--json") {
-      settings_.json = value();
-    } else if (option_ == "--csv") {
-      settings_.csv = value();
-    } else if (option_ == "--plot") {
-      settings_.plot = value();
-    } else if (option_ == "--balance") {
-      settings_.balance = tess::parse_balance(value());
-    } else if (option_ == "--balance-every") {
-      settings_.sync_every = value<std::int64_t>(1, 1'000'000'000);
-      has_barriers_ = true;
-    } else if (option_ == "--explain") {
-      settings_.explain = true;
-    } else if (option_ == "--spoil") {
-      const std::string_view task = value();
-      const std::size_t comma = std::min(task.find(','), task.size());
-      constexpr auto most = std::numeric_limits<std::int64_t>::max();
-      settings_.spoiled = {
-          number<std::int64_t>(option_, task.substr(0, comma), 0, most),
-          number<std::int64_t>(option_, task.substr(std::min(comma + 1, task.size())), 0, most)};
-    } else {
-      return false;
-    }
-    return true;
-  }
-
-  void complete(std::int32_t n_pes) {
-    Settings& s = settings_;
-    if (s.all_types && (!s.metg || given_.size() > 1))
-      refuse("-type all: only with -metg, and without -and");
-    if (s.repeat == 0) s.repeat = s.metg ? 5 : 1;
-    for (Given& given : given_) {
-      Graph& g = given.graph;
-      g.number = static_cast<std::int32_t>(s.graphs.size());
-      if (s.metg) {
-        if (!given.steps) g.steps = 1000;
-        if (!given.width) g.width = 16 * n_pes;
-        if (!given.type) g.type = Type::stencil_1d;
-        if (!given.kernel) g.kernel.type = KernelType::compute_bound;
-        if (g.kernel.type == KernelType::empty) refuse("-metg: -kernel empty has no grain");
-        if (given.iterations) refuse("-metg tries numbers of iterations: leave -iter out");
-      }
-      if (!given.period && has_period(g.type)) g.period = 3;
-      s.graphs.push_back(g);
-    }
-    const std::vector<std::vector<Graph>> all = cases(s);
-    if (s.spoiled && std::ranges::none_of(all, [&](const std::vector<Graph>& graphs) {
-          return std::ranges::any_of(graphs, [&](const Graph& g) {
-            return is_read(g, s.spoiled->first, s.spoiled->second);
-          });
-        }))
-      refuse(
-          fmt::format("--spoil {},{}: no graph has a task with this step and point whose output "
-                      "another task reads; give those of one",
-                      s.spoiled->first, s.spoiled->second));
-    if (!s.balance || s.balance->when == tess::BalanceWhen::periodic) {
-      if (has_barriers_) refuse("--balance-every: only with --balance STRATEGY, and not periodic");
-      s.sync_every = 0;
-    }
-  }
-
-  const std::vector<std::string_view> argv_;
-  std::size_t at_ = 0;
-  std::string_view option_;
-  Settings settings_;
-  bool has_barriers_ = false;  // --balance-every is given
-  std::vector<Given> given_;
-  Given next_;
+struct GraphOption {
+  std::string_view name;
+  std::string_view value;  // what the help calls it; empty: a flag
+  std::string meaning;
+  void (*take)(Graph&, std::string_view option, std::string_view value);
 };
+
+constexpr std::int64_t gigabyte = std::int64_t{1} << 30;
+/// Takes a number into a member of the graph, or of its kernel.
+template <auto member, auto least, auto most>
+void take(Graph& graph, std::string_view option, std::string_view value) {
+  const auto take_into = [&]<class Owner, class T>(Owner& owner, T Owner::*at) {
+    owner.*at = number<T>(option, value, least, most);
+  };
+  if constexpr (std::is_invocable_v<decltype(member), Graph&>)
+    take_into(graph, member);
+  else
+    take_into(graph.kernel, member);
+}
+
+using Text = std::string_view;
+const std::vector<GraphOption>& graph_options() {
+  static const std::vector<GraphOption> all{
+      {"-steps", "N", "steps (default 4; with -metg 1000)", take<&Graph::steps, 1, 1'000'000'000>},
+      {"-width", "N", "points of a step (default 4; with -metg 16 per PE)",
+       take<&Graph::width, 1, 100'000'000>},
+      {"-type", "NAME",
+       fmt::format("dependences (default trivial; with -metg stencil_1d): {}; with -metg also all",
+                   fmt::join(type_names(), ", ")),
+       [](Graph& g, Text, Text name) {
+         if (name != "all") g.type = parse_type(name);
+       }},
+      {"-radix", "N", "dependences of a task: nearest, spread, random_nearest (default 3)",
+       take<&Graph::radix, 0, 1'000'000>},
+      {"-period", "N", "steps after which they repeat: spread, random_nearest (default 3)",
+       take<&Graph::period, 0, 1'000'000>},
+      {"-fraction", "X", "share of the nearest that are dependences: random_nearest (default 0.25)",
+       take<&Graph::fraction, 0, 1>},
+      {"-kernel", "NAME",
+       fmt::format("work of a task (default empty; with -metg compute_bound): {}",
+                   fmt::join(kernel_names(), ", ")),
+       [](Graph& g, Text, Text name) { g.kernel.type = parse_kernel(name); }},
+      {"-iter", "N", "iterations of the kernel (default 0); without -metg",
+       take<&Kernel::iterations, 0, std::int64_t{1} << 40>},
+      {"-output", "N", "bytes that a task hands on, at least 16 (default 16)",
+       take<&Graph::output_bytes, 16, gigabyte>},
+      {"-scratch", "N", "bytes that memory_bound works on, per point",
+       take<&Kernel::scratch_bytes, 0, 16 * gigabyte>},
+      {"-sample", "N", "parts of the scratch, one per iteration (default 16)",
+       take<&Kernel::samples, 1, gigabyte>},
+      {"-imbalance", "X",
+       "load_imbalance: iterations are drawn from (1 +- X/2) N, X within 0 ... 2",
+       take<&Kernel::imbalance, 0, 2>},
+      {"-persistent", "", "load_imbalance: a point draws once, not at every step",
+       [](Graph& g, Text, Text) { g.kernel.persistent = true; }}};
+  return all;
+}
+
+std::string graph_help() {
+  std::string out = "Options of a graph (-and begins the next; all graphs run at once):\n";
+  for (const GraphOption& one : graph_options())
+    out += fmt::format("  {:<16} {}\n", fmt::format("{} {}", one.name, one.value), one.meaning);
+  return out + '\n' + tess::options_help();
+}
+
+/// Takes the graphs out of the command line; returns the other words.
+std::vector<char*> take_graphs(int argc, char** argv, std::vector<Given>& graphs) {
+  std::vector<char*> rest;
+  graphs.emplace_back();
+  for (int i = 0; i < argc; ++i) {
+    const std::string_view word = argv[i];
+    const auto option = std::ranges::find(graph_options(), word, &GraphOption::name);
+    if (word == "-and") {
+      graphs.emplace_back();
+    } else if (option == graph_options().end()) {
+      rest.push_back(argv[i]);
+    } else {
+      if (!option->value.empty() && ++i == argc) refuse(fmt::format("{} needs a value", word));
+      const std::string_view value = option->value.empty() ? "yes" : argv[i];
+      option->take(graphs.back().graph, word, value);
+      graphs.back().words[word.substr(1)] = value;
+    }
+  }
+  return rest;
+}
+
+void complete(Settings& s, const std::vector<Given>& all_given, std::int32_t n_pes) {
+  s.all_types = std::ranges::any_of(all_given, [](const Given& given) {
+    return given.has("type") && given.words.at("type").text() == "all";
+  });
+  if (s.all_types && (!s.metg || all_given.size() > 1))
+    refuse("-type all: only with -metg, and without -and");
+  if (s.repeat == 0) s.repeat = s.metg ? 5 : 1;
+  s.words = kit::Json::array();
+  for (const Given& given : all_given) {
+    Graph g = given.graph;
+    g.number = static_cast<std::int32_t>(s.graphs.size());
+    if (s.metg) {
+      if (!given.has("steps")) g.steps = 1000;
+      if (!given.has("width")) g.width = 16 * n_pes;
+      if (!given.has("type")) g.type = Type::stencil_1d;
+      if (!given.has("kernel")) g.kernel.type = KernelType::compute_bound;
+      if (g.kernel.type == KernelType::empty) refuse("-metg: -kernel empty has no grain");
+      if (given.has("iter")) refuse("-metg tries numbers of iterations: leave -iter out");
+    }
+    if (!given.has("period") && has_period(g.type)) g.period = 3;
+    s.graphs.push_back(g);
+    kit::Json words = given.words;
+    words.update(kit::Json());  // an object, also without members
+    s.words.push_back(std::move(words));
+  }
+  const std::vector<std::vector<Graph>> all = cases(s);
+  if (!s.spoiled.empty() && std::ranges::none_of(all, [&](const std::vector<Graph>& graphs) {
+        return std::ranges::any_of(
+            graphs, [&](const Graph& g) { return is_read(g, s.spoiled[0], s.spoiled[1]); });
+      }))
+    refuse(
+        fmt::format("--spoil {},{}: no graph has a task with this step and point whose output "
+                    "another task reads; give those of one",
+                    s.spoiled[0], s.spoiled[1]));
+}
 
 }  // namespace
 
-std::optional<Settings> parse(int argc, char** argv, const tess::Machine& machine) {
-  Parser parser(argc, argv);
-  if (parser.asks_for_help()) {
-    if (machine.process() == tess::ProcessId{0}) tess::print_text(help());
-    return std::nullopt;
-  }
-  return parser.run(machine.n_pes());
+bool parse(int argc, char** argv, std::int32_t n_pes, kit::Driver& driver, Settings& s) {
+  driver.group("Measuring");
+  driver.flag("-metg", s.metg,
+              "find METG(50 %): the least grain at which half of the time is kernels");
+  driver.repeat(s.repeat, "runs of each grain, the median counts (default 1; with -metg 5)");
+  driver.flag("--fastest", s.fastest,
+              "the fastest run counts: for a machine that others use as well");
+  driver.json();
+  driver.option("--csv FILE", s.csv, "write the measured grains as CSV");
+  driver.picture("draw efficiency against the grain");
+  driver.explain("say what this run uses and what it left out");
+  driver
+      .option("--spoil T,P", s.spoiled,
+              "task (T, P) hands on a wrong output: shows that it is found (exit code 1)")
+      .separated_by(',')
+      .between(0, 1'000'000'000)
+      .takes(2, 2);
+  driver.group("Load balancing");
+  driver.option("--balance STRATEGY", s.strategy,
+                "columns migrate: "
+                "STRATEGY[,when=at_sync|automatic|periodic][,period=50ms][,report] (README)");
+  driver.option("--balance-every", s.sync_every, "steps between barriers")
+      .between(1, 1'000'000'000);
+  std::vector<Given> graphs;
+  std::vector<char*> rest = take_graphs(argc, argv, graphs);
+  if (!driver.parse(static_cast<int>(rest.size()), rest.data(), graph_help())) return false;
+  if (driver.is_given("--balance")) s.balance = tess::parse_balance(s.strategy);
+  complete(s, graphs, n_pes);
+  if (s.balance && s.balance->when != tess::BalanceWhen::periodic) return true;
+  if (driver.is_given("--balance-every"))
+    refuse("--balance-every: only with --balance STRATEGY, and not periodic");
+  s.sync_every = 0;
+  return true;
 }
 
 std::vector<std::vector<Graph>> cases(const Settings& settings) {

@@ -68,7 +68,7 @@ refuses SOURCE "${transfer[@]}"
 refuses "no --pairs" "${transfer[@]}" kuhn:2 kuhn:2 kuhn:3
 refuses "--repeat 3 does not work with --pairs that write a mesh after it gave values" "${transfer[@]}" kuhn:2 kuhn:3 --pairs A:B,B:A --repeat 3
 refuses "'A:D' is no pair" "${transfer[@]}" kuhn:2 kuhn:2 kuhn:3 --pairs A:B,A:D
-refuses "--steps 2 does not work with fields and weights of files" "${transfer[@]}" kuhn:2 kuhn:2 --steps 2 --weights "$scratch/w.nc"
+refuses "--steps 2 does not work with --weights" "${transfer[@]}" kuhn:2 kuhn:2 --steps 2 --weights "$scratch/w.nc"
 "$bin/m2m_transfer" kuhn:2 kuhn:2 --weights "$scratch/w.nc" >"$scratch/out" || fail "no weights are written"
 for unused in "--kind nearest" "--tolerance 0.1" --clamp "--partition rcb" "--voxel 2"; do
   refuses "$unused does not work with --from-weights" "${transfer[@]}" kuhn:2 kuhn:2 --from-weights "$scratch/w.nc" $unused
@@ -81,10 +81,10 @@ refuses "--round-trips: '2,1'" "$bin/m2m_transfer" --json "$scratch/result.json"
 refuses "--move .* --round-trips" "$bin/m2m_transfer" kuhn:2 kuhn:2 --round-trips 1 --move 'translate(1,0,0)'
 # Options that do not work together, or would overwrite an input.
 alone=("$bin/m2m_transfer" kuhn:2 kuhn:3)
-refuses "--plot $scratch is the folder of --study" "${alone[@]}" --plot "$scratch"
-refuses "--move .* --steps" "${alone[@]}" --move 'translate(1,0,0)'
-refuses "--chares 5 and --per-pe 3" "${alone[@]}" --chares 5 --per-pe 3
-refuses "--study h does not work with --round-trips" "${alone[@]}" --round-trips 1 --study h
+refuses "--plot: needs --study or --round-trips" "${alone[@]}" --plot "$scratch"
+refuses "--move: needs --steps" "${alone[@]}" --move 'translate(1,0,0)'
+refuses "--chares 5 does not work with --per-pe 3" "${alone[@]}" --chares 5 --per-pe 3
+refuses "--study does not work with --round-trips" "${alone[@]}" --round-trips 1 --study h
 refuses "--steps 5 does not work with --round-trips" "${alone[@]}" --round-trips 1 --steps 5
 refuses "--kind linear does not work with --stability" "${alone[@]}" --kind linear --stability
 refuses "MORE kuhn:4 does not work with --stability" "${alone[@]}" kuhn:4 --stability
@@ -92,7 +92,7 @@ refuses "--fields: x is given twice" "${transfer[@]}" kuhn:2 kuhn:2 --fields x,s
 refuses "--fields sin does not work with --stability" "${alone[@]}" --stability --fields sin
 refuses "--voxel 0.5 does not work with --stability" "${alone[@]}" --stability --voxel 0.5
 refuses "--per-pe 3 does not work with --stability" "${alone[@]}" --stability --per-pe 3
-refuses "a second --policy does not work with --stability" "${alone[@]}" --stability --policy keep --policy nearest
+refuses "--policy is given more than once" "${alone[@]}" --stability --policy keep --policy nearest
 refuses "policy 'perhaps' is unknown" "${alone[@]}" --stability --policy perhaps
 refuses "partition method 'perhaps'" "${alone[@]}" --stability --partition perhaps
 refuses "^m2m_transfer: error: --json .* cannot be written" "${alone[@]}" --stability --json "$scratch/missing/x.json"
@@ -103,8 +103,8 @@ refuses "^m2m_transfer: error: --stability: m2m_stability is not beside this pro
 refuses "must be finite and at most 1e100" "${alone[@]}" --pes 2 --steps 20 --move 'B:translate(9e99,0,0)'
 refuses "--move .* does not work with --study" "${alone[@]}" --study steps --move 'translate(1,0,0)'
 refuses "--pairs B:A does not work with --study" "${alone[@]}" --study h --pairs B:A
-refuses "MORE kuhn:4 does not work with fields and weights" "${alone[@]}" kuhn:4 --weights "$scratch/w.nc"
-refuses "--repeat 3 does not work with fields and weights" "${alone[@]}" --repeat 3 --weights "$scratch/w.nc"
+refuses "MORE kuhn:4 does not work with --weights" "${alone[@]}" kuhn:4 --weights "$scratch/w.nc"
+refuses "--repeat 3 does not work with --weights" "${alone[@]}" --repeat 3 --weights "$scratch/w.nc"
 refuses "--out .* does not work with --kind all" "${alone[@]}" --kind all --out "$scratch/all.exo"
 refuses "--picture .* --kind all" "${alone[@]}" --kind all --picture "$scratch/cut.svg"
 refuses "--kind all does not work with --study steps" "${alone[@]}" --kind all --study steps
@@ -118,7 +118,7 @@ refuses "r.pvtu: fields of files are gathered" "${alone[@]}" --out "$scratch/r.p
 refuses "missing/r.pvtu" "${alone[@]}" --out "$scratch/missing/r.pvtu"
 refuses "XML, which names the parts, cannot hold this name" "${alone[@]}" --out "$scratch/"$'r\xf6.pvtu'
 refuses "cut.png: a picture's name must end in .svg" "${alone[@]}" --picture "$scratch/cut.png"
-refuses "would overwrite --out" "${alone[@]}" --out "$scratch/same.exo" --json "$scratch/same.exo"
+refuses "would overwrite --json" "${alone[@]}" --out "$scratch/same.exo" --json "$scratch/same.exo"
 refuses "would overwrite SOURCE" "$bin/m2m_transfer" "$scratch/kept.msh" kuhn:2 --trace "$scratch/kept.msh"
 cp "$scratch/box.msh" "$scratch/kept2.msh"
 refuses "would overwrite SOURCE" "$bin/m2m_transfer" "$scratch/kept.msh,$scratch/kept2.msh" kuhn:3 --study h --json "$scratch/kept.msh"
@@ -132,7 +132,7 @@ refuses "would overwrite SOURCE" "$bin/m2m_transfer" "$scratch/r.B.exo" kuhn:3 k
 "$bin/m2m_transfer" "$scratch/r.B.exo" kuhn:3 --fields x --out "$scratch/r.exo" >"$scratch/out" || fail "one result has the name given"
 refuses kind "${transfer[@]}" kuhn:2 kuhn:2 --kind perhaps
 refuses "--plot" "$bin/m2m_transfer" kuhn:2 kuhn:3 --study kind --plot "$scratch/empty.exo"
-refuses "--study kinds: is none of h, kind and steps" "$bin/m2m_transfer" kuhn:2 kuhn:3 --study kinds
+refuses "--study kinds: is none of h, kind, steps and pes" "$bin/m2m_transfer" kuhn:2 kuhn:3 --study kinds
 refuses missing.msh "$bin/m2m_transfer" --json "$scratch/result.json" "$scratch/missing.msh" --stability
 
 overset=("$bin/overset" --json "$scratch/result.json")
@@ -189,35 +189,37 @@ refuses "--by: needs a --heat map" "$bin/tess_monitor" --by pe
 refuses "--level '': give single or funneled" "$bin/embedded" --level
 refuses "--level 'double'" "$bin/embedded" --pes 1 --level double
 
-crowd=("$bin/collide_scaling" --study strong --pes 1 --triangles 2048)
+crowd=("$bin/collide_scene" crowd:2048 --study pes --machines 1)
 refuses "no balance strategy 'gredy'" "${crowd[@]}" --balance gredy
-refuses "--steps 5: greedy_refine balances after every 5 steps" "${crowd[@]}" --steps 5
-refuses "--costs pair=3ns does not work with --work measured" "${crowd[@]}" --work measured --costs pair=3ns
-refuses "--pes: Value 0 not in range" "$bin/collide_scaling" --pes 1,0
-refuses "--triangles: Value 0 not in range" "$bin/collide_scaling" --pes 1 --triangles 0
-refuses "--per-process 2: the 3 PEs of --pes do not divide into processes of so many; give .* multiples of 2" "$bin/collide_scaling" --pes 4,3 --per-process 2
-refuses "--thinned: 3 not in {1,4,16}" "${crowd[@]}" --thinned 3
-refuses "--message-ns: Value -1 not in range" "${crowd[@]}" --message-ns=-1
-refuses "--latency-ns: Value -1 not in range" "${crowd[@]}" --latency-ns=-1
-refuses "--out $scratch/missing/x.svg: cannot be written" "${crowd[@]}" --out "$scratch/missing/x"
-
-refuses "^collide_scene: error: --json: needs an INPUT" "$bin/collide_scene" --stability --json "$scratch/never.json"
+refuses "--steps 5: greedy_refine balances after every 5 steps" "${crowd[@]}" --steps 5 --balance greedy_refine
+refuses "--machines: Value 0 not in range" "$bin/collide_scene" crowd:2048 --study pes --machines 1,0
+refuses "3 PEs do not divide into processes of 2" "$bin/collide_scene" crowd:2048 --study pes --machines 4,3 --network per-process=2
+refuses "--network pes=3 names a number of PEs" "${crowd[@]}" --network pes=3
+refuses "--weak: .*box.msh is no scene made by rule" "$bin/collide_scene" "$scratch/box.msh" --study pes --weak
+refuses "--machines: needs --study" "$bin/collide_scene" crowd:2048 --machines 1
+refuses "--balance none does not work with --study voxels" "$bin/collide_scene" crowd:2048 --study voxels --balance none
+refuses "--triangles does not work with --study" "${crowd[@]}" --triangles
+refuses "--stability: needs no PEs" "$bin/collide_scene" --stability --pes 2
+refuses "^collide_scene: error: INPUT crowd:2048 does not work with --stability" "$bin/collide_scene" --stability crowd:2048
 refuses "^particles: error: --steps 5 does not work with --stability" "$bin/particles" --stability --steps 5
 refuses "^collide_scene: error: voxel grid: coordinate" "$bin/collide_scene" boxes:100 --pes 2 --voxel-size 1e-30
 
-scaling=("$bin/m2m_scaling" --pes 1)
-refuses "missing.exo: cannot be opened" "${scaling[@]}" "$scratch/missing.exo" kuhn:2
-refuses "nan.msh: vertex" "${scaling[@]}" kuhn:2 "$scratch/nan.msh"
-refuses "kind 'all' is unknown" "${scaling[@]}" kuhn:2 kuhn:2 --kind all
-refuses "--sim pes=3 names a number of PEs" "${scaling[@]}" kuhn:2 kuhn:2 --sim pes=3
-refuses "--sim: 3 PEs do not divide into processes of 2" "$bin/m2m_scaling" kuhn:2 kuhn:3 --pes 4,3 --sim per-process=2
-# Each machine is the one of --sim, and has its forced migrations.
-"$bin/m2m_scaling" kuhn:2 kuhn:3 --pes 1,2,6 --sim per-process=2 >"$scratch/out" && pass || fail "m2m_scaling refuses per-process=2"
+scaling=("$bin/m2m_transfer" --study pes --repeat 1 --machines)
+refuses "missing.exo: cannot be opened" "${scaling[@]}" 1 "$scratch/missing.exo" kuhn:2
+refuses "nan.msh: vertex" "${scaling[@]}" 1 kuhn:2 "$scratch/nan.msh"
+refuses "--kind all does not work with --study pes" "${scaling[@]}" 1 kuhn:2 kuhn:2 --kind all
+refuses "--network pes=3 names a number of PEs" "${scaling[@]}" 1 kuhn:2 kuhn:2 --network pes=3
+refuses "--sim: 3 PEs do not divide into processes of 2" "${scaling[@]}" 4,3 kuhn:2 kuhn:3 --network per-process=2
+refuses "--study pes simulates its machines" "${scaling[@]}" 1 kuhn:2 kuhn:3 --sim pes=2
+refuses "--machines: needs --study pes" "${alone[@]}" --machines 1,2
+refuses "--machines 1,2 does not work with --study" "${alone[@]}" --study h --machines 1,2
+# Each machine is the one of --network, and has its forced migrations.
+"${scaling[@]}" 1,2,6 kuhn:2 kuhn:3 --network per-process=2 >"$scratch/out" && pass || fail "--study pes refuses per-process=2"
 for chance in 0 0.5; do
-  "${scaling[@]}" kuhn:2 kuhn:3 --pes 2 --sim seed=3,cost=1ms,migrate=$chance >"$scratch/migrate.$chance" && pass || fail "m2m_scaling migrate=$chance"
+  "${scaling[@]}" 2 kuhn:2 kuhn:3 --network seed=3,cost=1ms,migrate=$chance >"$scratch/out" && tail -n 1 "$scratch/out" >"$scratch/migrate.$chance" && pass || fail "--study pes, migrate=$chance"
 done
-! cmp -s "$scratch/migrate.0" "$scratch/migrate.0.5" && pass || fail "m2m_scaling migrates nothing"
-refuses "--out $scratch/missing/x.svg: cannot be written" "${scaling[@]}" kuhn:2 kuhn:2 --out "$scratch/missing/x"
+! cmp -s "$scratch/migrate.0" "$scratch/migrate.0.5" && pass || fail "--study pes migrates nothing"
+refuses "empty.exo" "${scaling[@]}" 1 kuhn:2 kuhn:2 --plot "$scratch/empty.exo"
 
 # A study leaves nothing in its folder.
 refuses "missing/result.json: cannot be written: its folder" "$bin/m2m_transfer" kuhn:2 kuhn:3 --json "$scratch/missing/result.json"

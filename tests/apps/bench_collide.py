@@ -29,7 +29,7 @@ with tempfile.TemporaryDirectory() as scratch:
     names = [row["name"] for row in rows]
     # The rows in bytes of a case come after those in nanoseconds.
     assert sorted(names) == sorted(listed), set(names) ^ set(listed)
-    kept = json.loads(file.read_text())["rows"]
+    kept = json.loads(file.read_text())["results"]
     assert [row["name"] for row in kept] == names
     of = {row["name"]: row for row in rows}
     assert float(of["few_pairs"]["median"]) == 14534, of["few_pairs"]

@@ -84,9 +84,9 @@ for file in .svg _hits.vtp _pairs.vtp; do
 done
 
 # Reports.
-"$scene" planes:4096 --study --out "$scratch/out/planes" >"$scratch/table" && grep -q 'triangles .* 0.00 ' "$scratch/table"
-check "--study" $?
-"$scene" needles:2000 --triangles --study >"$scratch/table" && ! grep -q 'OTHER PAIRS' "$scratch/table"
+"$scene" planes:4096 --study voxels --out "$scratch/out/planes" >"$scratch/table" && grep -q 'triangles .* 0.00 ' "$scratch/table"
+check "--study voxels" $?
+"$scene" needles:2000 --study voxels >"$scratch/table" && ! grep -q 'OTHER PAIRS' "$scratch/table"
 check "the study of thin triangles, whose candidates are pieces in one row" $?
 for file in planes_study.csv planes_study_time.csv planes_study_error.csv; do
   [[ -s $scratch/out/$file ]]
@@ -94,6 +94,13 @@ for file in planes_study.csv planes_study_time.csv planes_study_error.csv; do
 done
 [[ $(wc -l <"$scratch/out/planes_study.csv") == 17 ]]
 check "the study has 16 rows" $?
+"$scene" crowd:8192 --study pes --machines 1,20 --steps 11 --balance none,greedy_refine --out "$scratch/out/crowd" >"$scratch/table" &&
+  [[ $(wc -l <"$scratch/table") == 5 ]]
+check "--study pes" $?
+for name in none greedy_refine; do
+  grep -q "^$name,20," "$scratch/out/crowd_pes.csv"
+  check "the study names the curve of $name" $?
+done
 "$scene" --stability >"$scratch/out.txt" 2>&1 && grep -q '^[1-9][0-9]* cases, 0 failed' "$scratch/out.txt"
 check "--stability" $?
 explains() {  # explains LINE ARGUMENT…
@@ -162,7 +169,7 @@ refuses '--steps' "$scene" planes:64 --steps 0
 refuses '--serial' "$scene" planes:64 --serial --pes 2
 refuses '--slack: is for chares' "$scene" planes:64 --slack 1
 refuses '--slack' "$scene" planes:64 --pes 2 --slack -1
-refuses '--repeat: with --slack' "$scene" planes:64 --pes 2 --slack 1 --repeat 2
+refuses '--repeat 2 does not work with --slack 1' "$scene" planes:64 --pes 2 --slack 1 --repeat 2
 refuses '--nonsense' "$scene" planes:64 --nonsense
 refuses '--out' "$scene" planes:64 --out "$scratch/empty.obj/x"
 refuses 'missing.obj' "${mpirun[@]}" -n 2 "$scene" "$scratch/missing.obj" --pes 1

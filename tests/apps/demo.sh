@@ -16,14 +16,14 @@ import json, os, sys
 folder, log = sys.argv[1], open(sys.argv[2]).read()
 def read(name):
     return json.load(open(os.path.join(folder, name)))
-pairs = [read(name)["pairs"][0] for name in ("result.json", "result_1.json", "result_2.json")]
+pairs = [read(name)["results"][0] for name in ("result.json", "result_1.json", "result_2.json")]
 assert [pair["processes"] for pair in pairs] == [1, 1, 2], "processes"
 assert len({pair["result_hash"] for pair in pairs}) == 1, f"hashes differ: {[p['result_hash'] for p in pairs]}"
 for pair in pairs:
     assert pair["outside"] == 0 and pair["inside"] > 0.4 * pair["targets"], pair
     assert 0 < pair["l2_relative"] < 0.1, pair["l2_relative"]
 study = read("study/study.json")
-assert len(study["pairs"]) == 3, "pairs of the study"
+assert len(study["results"]) == 3, "rows of the study"
 order = study["trends"][0]["l2_of_edge"]
 assert 1.7 < order < 2.3, f"order {order}"
 for name in ("result.exo", "result.svg", "result.txt", "study.txt", "study/error_time.csv", "study/error_edge.csv", "study/study.csv"):

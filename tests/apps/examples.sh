@@ -148,12 +148,4 @@ check "files of a run on more PEs stay in the folder of snapshots" $?
 
 answers 'hash' "${coupled[@]}" --reaction 0.5
 
-# The curves of a scaling study are named by what its clock counts, and by the balancer where there are several.
-timeout 60 "$bin/collide_scaling" --pes 1 --triangles 2048 --costs pair=10ns --steps 6 --balance none,greedy_refine --out "$scratch/weak" >"$scratch/out" 2>&1
-check "collide_scaling with two balancers" $?
-for name in none greedy_refine; do
-  grep -q "^\"modelled work and messages, $name\",1," "$scratch/weak.csv"
-  check "collide_scaling names the curve of $name" $?
-done
-
 finish

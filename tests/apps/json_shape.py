@@ -36,7 +36,7 @@ overset ball --study wall
 m2m_transfer kuhn:3 kuhn:4
 m2m_transfer kuhn:3 kuhn:4 --kind all
 m2m_transfer kuhn:3,4 kuhn:4,5 --study h
-m2m_transfer kuhn:3,4 kuhn:4,5 --study kind
+m2m_transfer kuhn:3,4 kuhn:4,5 --study kind --fields linear
 m2m_transfer kuhn:3 kuhn:4 --study steps
 m2m_transfer kuhn:3 kuhn:4 --study pes
 m2m_transfer kuhn:3 kuhn:4 --round-trips 1,2

@@ -78,7 +78,7 @@ fails 2 "at most 1 for spread" "$bin" -metg -type all -width 4 -radix 4 --pes 2
 python3 - "$scratch/drawn.json" <<'PYTHON' && pass || fail "efficiency of drawn iterations"
 import json, sys
 (result,) = json.load(open(sys.argv[1]))["results"]
-rows = result["rows"]
+rows = result["grains"]
 assert len(rows) > 3, rows
 rest = [row["seconds"] * (1 - row["efficiency"]) for row in rows]
 for row, one in zip(rows, rest):
@@ -97,10 +97,10 @@ assert 0.095 < metg["trivial"] < 0.11, metg
 assert 0.095 < metg["no_comm"] < 0.11, metg
 assert 0.19 < metg["stencil_1d"] < 0.21, metg
 for one in results:
-    assert one["pes"] == 4 and one["ranks"] == 1 and one["width"] == 64 and one["rows"], one
-    assert all(set(row) >= {"iterations", "grain_us", "seconds", "efficiency"} for row in one["rows"])
+    assert one["pes"] == 4 and one["ranks"] == 1 and one["width"] == 64 and one["grains"], one
+    assert all(set(row) >= {"iterations", "grain_us", "seconds", "efficiency"} for row in one["grains"])
 rows = list(csv.DictReader(open(sys.argv[2])))
-assert len(rows) == sum(len(one["rows"]) for one in results)
+assert len(rows) == sum(len(one["grains"]) for one in results)
 PYTHON
 [[ -s $scratch/m.csv ]] || fail "no m.csv"
 fails 2 "would overwrite --json" "$bin" --json "$scratch/x.csv" --plot "$scratch/x.svg"

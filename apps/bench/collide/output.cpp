@@ -1,7 +1,6 @@
 #include "apps/bench/collide/output.hpp"
 
 #include <algorithm>
-#include <cstdio>
 #include <fmt/core.h>
 
 namespace bench {
@@ -19,18 +18,9 @@ bool Output::wants_any(std::string_view of) const {
                      [&](const std::string& name) { return name.starts_with(prefix); });
 }
 
-void Output::header() const {
-  fmt::print("{}", csv_header());
-  std::fflush(stdout);
-}
-
 void Output::row(std::string_view of, const std::string& name, const Samples& samples,
                  std::string_view unit, double limit, std::optional<Origin> origin) {
-  if (!wants(of, name)) return;
-  rows_.push_back(make_row(name, samples, unit, limit));
-  rows_.back().origin = std::move(origin);
-  fmt::print("{}", csv_line(rows_.back(), origin_));
-  std::fflush(stdout);
+  if (wants(of, name)) report_.row(name, samples, unit, limit, std::move(origin));
 }
 
 void Output::row(std::string_view of, const std::string& name, double value,

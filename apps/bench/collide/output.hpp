@@ -19,7 +19,7 @@ struct CollideOptions {
 class Output {
  public:
   Output(const CollideOptions& options, std::string machine)
-      : options_(options), origin_{std::move(machine)} {}
+      : options_(options), report_({std::move(machine)}) {}
 
   [[nodiscard]] const CollideOptions& options() const { return options_; }
   /// True if a row is asked for by its name or its case's.
@@ -27,17 +27,15 @@ class Output {
   /// True if the case, or a row that begins with its name, is asked for.
   [[nodiscard]] bool wants_any(std::string_view of) const;
 
-  void header() const;
   void row(std::string_view of, const std::string& name, const Samples& samples,
            std::string_view unit, double limit = 0, std::optional<Origin> origin = {});
   /// A row of one value.
   void row(std::string_view of, const std::string& name, double value, std::string_view unit);
-  [[nodiscard]] std::string json() const { return json_text(rows_, origin_); }
+  [[nodiscard]] const Report& report() const { return report_; }
 
  private:
   const CollideOptions& options_;
-  Origin origin_;
-  std::vector<Row> rows_;
+  Report report_;
 };
 
 }  // namespace bench

@@ -32,7 +32,7 @@ constexpr double band = 3;  // cells; OpenVDB's default
 
 /// The options of one run, and its report.
 struct Bench {
-  const Report& report;
+  Report& report;
   int repeat;
   Surface torus = make_torus(major_radius, minor_radius, 188);
 
@@ -218,7 +218,7 @@ int main(int argc, char** argv) {
         "The cost of building, compressing and looking up distance/normal fields.");
     line.option("--repeat", repeat, "how often each is measured").between(1, 1000);
     if (!line.parse(argc, argv)) return 0;
-    const bench::Report report("one core");
+    bench::Report report({"one core"});
     return tess::run(setup, [&] { bench::measure({report, repeat}); });
   });
 }

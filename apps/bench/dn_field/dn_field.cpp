@@ -97,7 +97,7 @@ Rules all_rules(double cell) {
 
 class Bench {
  public:
-  Bench(const Report& report, const Options& options)
+  Bench(Report& report, const Options& options)
       : report_(report),
         options_(options),
         field_(build_field(box_, grid_around(bounds(box_), resolution, 0.45))),
@@ -269,7 +269,7 @@ class Bench {
     }
   }
 
-  const Report& report_;
+  Report& report_;
   const Options& options_;
   Surface box_ = cut_box(1);
   Field field_;
@@ -289,8 +289,7 @@ int main(int argc, char** argv) {
     line.option("--only", options.only, "measures whose name has this in it");
     if (!line.parse(argc, argv)) return 0;
     const std::string machine = setup.machine->describe();
-    const bench::Report report(
-        machine.substr(0, std::min(machine.find(';'), machine.find(" on "))));
+    bench::Report report({machine.substr(0, std::min(machine.find(';'), machine.find(" on ")))});
     return tess::run(setup, [&] { bench::Bench(report, options).measure(); });
   });
 }

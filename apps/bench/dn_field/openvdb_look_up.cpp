@@ -12,7 +12,7 @@ namespace bench {
 
 using namespace tess::dn;
 
-void look_up_beside_openvdb(const Report& report, const Surface& surface, const Grid& grid,
+void look_up_beside_openvdb(Report& report, const Surface& surface, const Grid& grid,
                             double half_width, int repeat) {
   const auto theirs = OpenVdbField::build(surface, grid, half_width);
   if (!theirs) return;

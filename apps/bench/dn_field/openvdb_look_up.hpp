@@ -9,7 +9,7 @@ namespace bench {
 
 /// Nearest and trilinear distances of points all over `grid`, in bands of `half_width` cells. The
 /// fastest of each is compared with the other: 25 % is allowed.
-void look_up_beside_openvdb(const Report& report, const tess::dn::Surface& surface,
+void look_up_beside_openvdb(Report& report, const tess::dn::Surface& surface,
                             const tess::dn::Grid& grid, double half_width, int repeat);
 
 }  // namespace bench

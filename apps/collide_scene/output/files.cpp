@@ -8,16 +8,18 @@
 
 namespace collide_scene {
 
-void prepare_files(const Options& options) {
-  kit::require_writable("--json", options.json);
-  if (options.out.empty()) return;
-  kit::make_folder("--out " + options.out, std::filesystem::path(options.out).parent_path());
-  for (const char* file : {".svg", "_hits.vtp", "_pairs.vtp"})
-    kit::require_writable("--out", options.out + file);
-  if (!options.study) return;
-  for (const char* file :
-       {"_study.csv", "_study_time.svg", "_study_entries.svg", "_study_error.svg"})
-    kit::require_writable("--out", options.out + file);
+void prepare_files(const std::string& prefix, const std::vector<std::string>& endings,
+                   kit::FileNames& files) {
+  if (prefix.empty()) return;
+  kit::make_folder("--out " + prefix, std::filesystem::path(prefix).parent_path());
+  for (const std::string& ending : endings) {
+    kit::require_writable("--out", prefix + ending);
+    files.writes("--out", prefix + ending);
+  }
+}
+
+std::vector<std::string> endings() {
+  return {".svg", "_hits.vtp", "_pairs.vtp"};
 }
 
 void write_files(const std::string& prefix, const Scene& scene, std::span<const ScenePair> pairs) {

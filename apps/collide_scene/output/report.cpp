@@ -1,6 +1,6 @@
 #include "apps/collide_scene/output/report.hpp"
 
-#include "apps/kit/json.hpp"
+#include "apps/kit/rows.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -35,6 +35,37 @@ std::string pairs_in_words(const Report& report) {
                      report.n_models == 0                      ? "no models"
                      : rules.within_model == WithinModel::test ? "between and within models"
                                                                : "between models");
+}
+
+struct StepRow {
+  std::size_t step = 0;
+  StepResult result;
+  std::size_t n_objects = 0;
+};
+using R = const StepRow&;
+using kit::Json;
+
+constexpr kit::Column<StepRow> columns[] = {
+    {"step", "step", "8", kit::of<&StepRow::step>},
+    {"candidates", "candidates", "12", [](R r) -> Json { return r.result.answer.n_candidates; }},
+    {"pairs", "pairs", "12", [](R r) -> Json { return r.result.answer.n_pairs; }},
+    {"searched", "", nullptr, [](R r) -> Json { return r.result.searched; }},
+    {"kept", "", nullptr, [](R r) -> Json { return r.result.n_kept; }},
+    {"", "ms", "12.4f", [](R r) -> Json { return 1e3 * r.result.seconds; }},
+    {"", "ns/object", "12.2f",
+     [](R r) -> Json { return 1e9 * r.result.seconds / static_cast<double>(r.n_objects); }},
+    {"seconds", "", nullptr, [](R r) -> Json { return r.result.seconds; }}};
+
+const kit::Rows<StepRow>& step_report() {
+  static const kit::Rows<StepRow> rows(columns);
+  return rows;
+}
+
+std::vector<StepRow> rows_of(const Report& report) {
+  std::vector<StepRow> rows;
+  for (const StepResult& step : report.result.steps)
+    rows.push_back({rows.size(), step, report.n_objects});
+  return rows;
 }
 
 std::string slack_in_words(const RunResult& result) {
@@ -106,19 +137,16 @@ std::string table(const Report& report) {
                  ? "long thin triangles, whole, by their capsules"
                  : fmt::format("{} pieces of long thin triangles", *grid.pieces));
   if (report.options.rules.slack > 0) line("slack", slack_in_words(result));
-  out += fmt::format("  {:>6} {:>12} {:>12} {:>12} {:>12}\n", "step", "candidates", "pairs", "ms",
-                     "ns/object");
+  out += step_report().head();
   constexpr std::size_t most_rows = 20;
-  const std::size_t n = result.steps.size();
-  for (std::size_t i = 0; i < n; ++i) {
-    if (n > most_rows && i == most_rows / 2) {
-      out += fmt::format("  {:>6} ({} steps)\n", "…", n - most_rows);
-      i = n - most_rows / 2;
+  const std::vector<StepRow> rows = rows_of(report);
+  const std::size_t n_left_out = rows.size() > most_rows ? rows.size() - most_rows : 0;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (n_left_out > 0 && i == most_rows / 2) {
+      out += fmt::format("  {:>6} ({} steps)\n", "…", n_left_out);
+      i += n_left_out;
     }
-    const StepResult& step = result.steps[i];
-    out += fmt::format("  {:>6} {:>12} {:>12} {:>12.4f} {:>12.2f}\n", i, step.answer.n_candidates,
-                       step.answer.n_pairs, step.seconds * 1e3,
-                       step.seconds * 1e9 / static_cast<double>(report.n_objects));
+    out += step_report().line(rows[i]);
   }
   line("error", report.false_positive_rate
                     ? fmt::format("{:.2f} % of the candidates of the last step are no pairs of {}",
@@ -127,55 +155,39 @@ std::string table(const Report& report) {
   line("time", fmt::format("{:.6f} s per step, {:.2f} ns per object; peak memory {:.1f} MB",
                            result.seconds_per_step(), ns_per_object(report),
                            static_cast<double>(result.peak_memory_bytes) / 1e6));
-  line("result", fmt::format("{:016x}", result.total().hash));
+  line("result", kit::hex(result.total().hash));
   return out;
 }
 
-std::string json(const Report& report) {
+Json json(const Report& report) {
   const RunResult& result = report.result;
   const Answer total = result.total();
-  kit::Json out;
-  const auto set = [&out](const char* key, const auto& value) {
-    if (value)
-      out[key] = *value;
-    else
-      out[key] = nullptr;
-  };
-  out["scene"] = report.scene;
-  out["inputs"] = report.options.inputs;
-  out["objects"] = report.n_objects;
-  out["triangles"] = report.n_triangles;
-  out["models"] = report.n_models;
-  out["steps"] = result.steps.size();
-  out["pairs"] = total.n_pairs;
-  out["candidates"] = total.n_candidates;
-  set("false_positive_rate", report.false_positive_rate);
   const tess::collide::GridCounts& grid = result.grid.counts;
-  out["voxel_size"] = grid.voxel_size;
-  out["levels"] = grid.n_levels;
-  out["voxels"] = grid.n_voxels;
-  out["entries"] = grid.n_entries;
-  out["left_out"] = grid.n_left_out;
-  set("pieces", result.grid.pieces);
-  set("grid_bytes", result.grid.bytes);
-  out["slack"] = report.options.rules.slack;
-  out["searches"] = result.n_searched();
-  out["seconds_per_step"] = result.seconds_per_step();
-  out["ns_per_object"] = ns_per_object(report);
-  out["peak_memory_bytes"] = result.peak_memory_bytes;
-  out["result_hash"] = fmt::format("{:016x}", total.hash);
-  out["machine"] = report.on_chares ? report.machine : "one thread";
-  out["pes"] = report.n_pes;
-  out["processes"] = report.n_processes;
-  out["rows"] = kit::Json::array();
-  for (std::size_t i = 0; i < result.steps.size(); ++i)
-    out["rows"].push_back({{"step", i},
-                           {"pairs", result.steps[i].answer.n_pairs},
-                           {"candidates", result.steps[i].answer.n_candidates},
-                           {"searched", result.steps[i].searched},
-                           {"kept", result.steps[i].n_kept},
-                           {"seconds", result.steps[i].seconds}});
-  return kit::json_text(out);
+  return {{"scene", report.scene},
+          {"inputs", report.options.inputs},
+          {"objects", report.n_objects},
+          {"triangles", report.n_triangles},
+          {"models", report.n_models},
+          {"pairs", total.n_pairs},
+          {"candidates", total.n_candidates},
+          {"false_positive_rate", report.false_positive_rate},
+          {"voxel_size", grid.voxel_size},
+          {"levels", grid.n_levels},
+          {"voxels", grid.n_voxels},
+          {"entries", grid.n_entries},
+          {"left_out", grid.n_left_out},
+          {"pieces", result.grid.pieces},
+          {"grid_bytes", result.grid.bytes},
+          {"slack", report.options.rules.slack},
+          {"searches", result.n_searched()},
+          {"seconds_per_step", result.seconds_per_step()},
+          {"ns_per_object", ns_per_object(report)},
+          {"peak_memory_bytes", result.peak_memory_bytes},
+          {"result_hash", kit::hex(total.hash)},
+          {"machine", report.on_chares ? report.machine : "one thread"},
+          {"pes", report.n_pes},
+          {"processes", report.n_processes},
+          {"steps", step_report().json(rows_of(report))}};
 }
 
 }  // namespace collide_scene

@@ -1,9 +1,9 @@
-// Reports of a run: the table, its JSON file, and what the scene uses and leaves out.
+// Reports of a run: the table, its JSON, and what the scene uses and leaves out.
 #pragma once
 
-#include "apps/collide_scene/input/motion.hpp"
 #include "apps/collide_scene/options.hpp"
 #include "apps/collide_scene/run/result.hpp"
+#include "apps/kit/json.hpp"
 
 #include <optional>
 #include <string>
@@ -30,7 +30,7 @@ struct Report {
 /// For --explain, before the run.
 [[nodiscard]] std::string explanation(const Report& report);
 [[nodiscard]] std::string table(const Report& report);
-/// One object; a number that is not known is null.
-[[nodiscard]] std::string json(const Report& report);
+/// One object, with the list "steps"; a number that is not known is null.
+[[nodiscard]] kit::Json json(const Report& report);
 
 }  // namespace collide_scene

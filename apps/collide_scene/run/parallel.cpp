@@ -18,15 +18,18 @@ std::vector<T> part(const std::vector<T>& all, std::size_t begin, std::size_t en
 
 }  // namespace
 
-ParallelCollisions::ParallelCollisions(const Scene& scene, const Rules& rules)
-    : scene_(scene), rules_(rules) {}
+ParallelCollisions::ParallelCollisions(const Scene& scene, const Rules& rules,
+                                       const SimulatedCosts& costs)
+    : scene_(scene), rules_(rules), costs_(costs) {}
 
 tess::Task ParallelCollisions::begin() {
   const PairRules pair_rules{rules_.open ? Touching::does_not_count : Touching::counts,
                              scene_.models.empty() ? WithinModel::test : rules_.within_model};
   const double size = rules_.voxel_size;  // zero: chosen
-  const ColliderOptions options{
-      .voxel_size = {size, size, size}, .rules = pair_rules, .slack = rules_.slack};
+  const ColliderOptions options{.voxel_size = {size, size, size},
+                                .rules = pair_rules,
+                                .slack = rules_.slack,
+                                .simulated_costs = costs_};
   co_await tess::epoch([&] {
     collider_ = make_collider(options);
     clients_ = tess::create<Client>(tess::range(tess::n_pes()));

@@ -18,8 +18,10 @@ namespace collide_scene {
 /// The collider and its clients, on PE 0. Begin, steps, end.
 class ParallelCollisions {
  public:
-  /// The scene must outlive this; its objects may move between steps.
-  ParallelCollisions(const Scene& scene, const Rules& rules);
+  /// The scene must outlive this; its objects may move between steps. `costs` are those of a
+  /// simulated machine.
+  ParallelCollisions(const Scene& scene, const Rules& rules,
+                     const tess::collide::SimulatedCosts& costs = {});
 
   tess::Task begin();
   /// Hands out the objects where they are now, then collides them; only the second is timed, and
@@ -27,10 +29,13 @@ class ParallelCollisions {
   tess::Task step(int step, int repeat, StepResult& result, std::vector<ScenePair>* pairs);
   /// Fills in what is known of the grid and the memory, and frees the collider.
   tess::Task end(RunResult& result);
+  /// Known after begin().
+  [[nodiscard]] const tess::collide::Collider& collider() const { return collider_; }
 
  private:
   const Scene& scene_;
   const Rules rules_;
+  const tess::collide::SimulatedCosts costs_;
   tess::collide::Collider collider_;
   tess::ArrayProxy<Client> clients_;
   tess::collide::CollisionStatistics last_;

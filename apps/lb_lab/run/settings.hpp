@@ -29,8 +29,8 @@ struct Settings {
   std::int32_t repeat = 1;  ///< runs of each; the fastest counts
   std::string plot, snapshots;
   std::string snapshot_format = "json.br";  ///< or json: not compressed
-  std::vector<std::string> replay;  ///< files; not empty: no run
-  std::int32_t replay_pes = 0;      ///< 0: as in the files
+  std::vector<std::string> replay;          ///< files; not empty: no run
+  std::int32_t replay_pes = 0;              ///< 0: as in the files
   std::string fold = "block";
 };
 

@@ -116,7 +116,7 @@ TransferReport report_of(const Problem& problem, const Pair& pair, const Request
   report.machine = machine().describe();
   report.pes = machine().n_pes();
   report.processes = machine().n_processes();
-  report.chares = request.n_chares != 0 ? request.n_chares : request.per_pe * machine().n_pes();
+  report.chares = request.chares();
   report.voxel = problem.voxel[0];
   report.source_tets = static_cast<std::size_t>(source.survey.n_tets);
   report.source_edge = typical_edge(source.survey);
@@ -125,6 +125,10 @@ TransferReport report_of(const Problem& problem, const Pair& pair, const Request
 }
 
 }  // namespace
+
+std::int32_t Request::chares() const {
+  return n_chares != 0 ? n_chares : per_pe * machine().n_pes();
+}
 
 void check_kind(TransferKind kind, const Request& request) {
   if (!is_conservative(kind)) return;

@@ -37,6 +37,9 @@ struct Request {
   std::int32_t repeat = 1;  ///< number of transfers; the fastest counts
   std::int32_t steps = 1;   ///< applications of each; the fastest counts
   std::vector<std::string> moves{};
+
+  /// Per mesh. In a run.
+  [[nodiscard]] std::int32_t chares() const;
 };
 
 /// A mesh of a run. PE 0 holds it only if it has to: if Zoltan cuts it, or the file cannot be read

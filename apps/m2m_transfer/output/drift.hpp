@@ -1,16 +1,16 @@
-// The drift over round trips as a table, JSON, CSV and pictures.
+// The drift over round trips as rows and pictures.
 #pragma once
 
+#include "apps/kit/rows.hpp"
+#include "apps/m2m_transfer/output/folder.hpp"
 #include "apps/m2m_transfer/run/drift.hpp"
 
-#include <string>
+#include <vector>
 
 namespace m2m_transfer {
 
-[[nodiscard]] std::string table(const Drift& drift);
-[[nodiscard]] std::string json(const Drift& drift);
-/// Writes drift.csv, drift.json, drift_l2.svg and drift_integral.svg into an existing folder.
-/// Returns a line that lists them.
-[[nodiscard]] std::string write(const Drift& drift, const std::string& folder);
+[[nodiscard]] const kit::Rows<DriftRow>& drift_rows();
+/// The differences and the change of the integral against the number of trips.
+[[nodiscard]] std::vector<Picture> pictures_of(const std::vector<DriftRow>& rows);
 
 }  // namespace m2m_transfer

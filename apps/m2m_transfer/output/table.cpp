@@ -2,9 +2,7 @@
 
 #include "apps/m2m_transfer/output/farthest.hpp"
 #include "apps/m2m_transfer/output/found.hpp"
-#include "m2m/transfer_kind.hpp"
 
-#include <array>
 #include <fmt/core.h>
 
 namespace m2m_transfer {
@@ -12,88 +10,6 @@ namespace {
 
 double megabytes(std::uint64_t bytes) {
   return static_cast<double>(bytes) / 1e6;
-}
-
-kit::Json norms_of(const ErrorNorms& norms) {
-  return {{"l2", norms.l2},
-          {"l2_relative", norms.l2_relative},
-          {"rms", norms.rms},
-          {"linf", norms.linf}};
-}
-
-/// The meaning of a number of the report.
-struct Definition {
-  const char* name;
-  const char* meaning;
-};
-constexpr std::array definitions{
-    Definition{"e", "value - truth at a vertex of the target"},
-    Definition{"l2", "sqrt(sum m e^2); m: a quarter of the volume of the vertex's tetrahedra"},
-    Definition{"l2_relative", "l2 / sqrt(sum m truth^2)"},
-    Definition{"rms", "sqrt(mean e^2)"},
-    Definition{"linf", "max |e|"},
-    Definition{"integral",
-               "of the field by the row sums of the mass matrix, over the source and the target"},
-    Definition{
-        "all",
-        "sums, mean and maximum over all vertices; vertices outside have the values of the policy"},
-    Definition{"found", "the same over vertices that are inside, boundary or snapped"}};
-
-/// {"vertices": n, "l2": …}; null if no vertex was found.
-kit::Json found_of(const ErrorNorms& norms) {
-  if (norms.n_vertices == 0) return nullptr;
-  auto out = norms_of(norms);
-  out["vertices"] = norms.n_vertices;
-  return out;
-}
-
-kit::Json pair_of(const TransferReport& r) {
-  kit::Json pair;
-  pair["source"] = r.source;
-  pair["target"] = r.target;
-  pair.update(json_of(r.source_elements, r.target_elements));
-  pair["targets"] = r.targets;
-  pair["inside"] = r.tally.counts[0];
-  pair["boundary"] = r.tally.counts[1];
-  pair["snapped"] = r.tally.counts[2];
-  pair["outside"] = r.tally.counts[3];
-  if (is_conservative(parse_transfer_kind(r.kind))) {
-    pair["overcovered"] = r.tally.n_overcovered;
-    pair["most_covered"] = r.tally.most_covered;
-  }
-  pair["farthest"] = json_of(r.worst);
-  pair.update(norms_of(r.fields.front().norms));
-  pair["found"] = found_of(r.fields.front().found);
-  pair["candidates"] = r.tally.n_candidates;
-  pair["seconds"] = {{"read", r.seconds.read},    {"setup", r.seconds.setup},
-                     {"broad", r.seconds.broad},  {"narrow", r.seconds.narrow},
-                     {"apply", r.seconds.apply},  {"transfer", r.seconds.transfer()},
-                     {"gather", r.seconds.gather}};
-  if (r.searches > 1) pair["seconds"]["search_again"] = r.seconds.again;
-  pair["searches"] = r.searches;
-  pair["kept_sources"] = r.tally.n_kept_sources;
-  pair["peak_memory_bytes"] = r.footprint.peak_memory_bytes;
-  pair["peak_memory_bytes_greatest"] = r.footprint.greatest_peak_memory_bytes;
-  pair["bytes_sent"] = r.footprint.bytes_sent;
-  pair["result_hash"] = fmt::format("{:016x}", r.result_hash);
-  pair["policy"] = r.policy;
-  pair["kind"] = r.kind;
-  pair["source_tets"] = r.source_tets;
-  pair["source_edge"] = r.source_edge;
-  pair["machine"] = r.machine;
-  pair["pes"] = r.pes;
-  pair["processes"] = r.processes;
-  pair["chares"] = r.chares;
-  pair["voxel"] = r.voxel;
-  pair["fields"] = kit::Json::array();
-  for (const FieldError& field : r.fields) {
-    kit::Json of_field{{"name", field.name}};
-    of_field.update(norms_of(field.norms));
-    of_field["integral"] = {{"source", field.source_integral}, {"target", field.target_integral}};
-    of_field["found"] = found_of(field.found);
-    pair["fields"].push_back(std::move(of_field));
-  }
-  return pair;
 }
 
 }  // namespace
@@ -168,18 +84,6 @@ std::string legend() {
          "  Linf = max |e|; over the vertices found (inside, boundary, snapped), and over all "
          "vertices\n"
          "  (those outside have the values of the policy)\n";
-}
-
-kit::Json json_of(const std::vector<TransferReport>& reports) {
-  kit::Json whole;
-  for (const Definition& d : definitions) whole["definitions"][d.name] = d.meaning;
-  whole["pairs"] = kit::Json::array();
-  for (const TransferReport& report : reports) whole["pairs"].push_back(pair_of(report));
-  return whole;
-}
-
-std::string json(const std::vector<TransferReport>& reports) {
-  return kit::json_text(json_of(reports));
 }
 
 }  // namespace m2m_transfer

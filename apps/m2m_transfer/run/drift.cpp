@@ -77,10 +77,6 @@ Task measure_drift(Request request, const std::vector<TransferKind>& kinds,
   request.pairs = "A:B,B:A";
   progress.phase("reading");
   Problem problem = co_await load(request);
-  drift.source = request.source;
-  drift.target = request.target;
-  drift.machine = machine().describe();
-  drift.policy = request.policy;
   for (const TransferKind kind : kinds) {
     problem.kind = kind;
     co_await run_kind(problem, trips, progress, drift);

@@ -26,7 +26,6 @@ struct DriftRow {
 };
 
 struct Drift {
-  std::string source, target, machine, policy;
   std::vector<DriftRow> rows;        ///< by kind, then by trips, then by field
   std::vector<double> trip_seconds;  ///< per kind: one round trip, the mean of all
 };

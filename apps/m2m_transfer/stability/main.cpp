@@ -1,15 +1,11 @@
 // m2m_stability [SOURCE [TARGET]]: transfers between extreme meshes and points, and the same of the
 // meshes given; m2m_transfer --stability runs it. Exit code 1 if a row fails.
-#include "apps/kit/write_file.hpp"
-#include "apps/m2m_transfer/contradictions.hpp"
 #include "apps/m2m_transfer/options.hpp"
 #include "apps/m2m_transfer/stability/rows.hpp"
 #include "m2m/read_mesh.hpp"
-#include "runtime/command_line.hpp"
 #include "runtime/runtime.hpp"
 
-#include <algorithm>
-#include <cstdio>
+#include <utility>
 
 namespace m2m_transfer::stability {
 namespace {
@@ -33,27 +29,34 @@ std::vector<Case> cases_for(const Request& request) {
   return cases;
 }
 
+constexpr kit::Column<Row> columns[] = {{"points", "points", "6", kit::of<&Row::n_points>},
+                                        {"lost", "lost", "4", kit::of<&Row::lost>},
+                                        {"snapped", "snapped", "7", kit::of<&Row::snapped>},
+                                        {"outside", "outside", "7", kit::of<&Row::outside>},
+                                        {"runs", "runs", "4", kit::of<&Row::n_runs>},
+                                        {"same_bits", "same bits", "<9", kit::of<&Row::same_bits>}};
+
 int run(Setup& setup, int argc, char** argv) {
-  DriverOptions options;
-  tess::CommandLine line(
+  Options options;
+  kit::Driver driver(
+      setup,
       "Transfers between extreme meshes and points, and the same of SOURCE and TARGET where they "
       "are given: points lost, error, bits. It takes the options of m2m_transfer, and refuses "
-      "those "
-      "that it does not use.");
-  if (!read_options(line, options, argc, argv)) return 0;
-  (void)file_names(options, setup.options.trace);
-  refuse_contradictions(options, Mode::stability);
-  kit::require_writable("--json", options.json);
-  Ways ways{.policy = parse_policy(options.policies.front())};
-  if (options.partition_is_given)
+      "those that it does not use.");
+  if (!read_options(driver, options, argc, argv)) return 0;
+  driver.enter(Mode::stability, "--stability");
+  Ways ways{.policy = parse_policy(options.request.policy)};
+  if (driver.is_given("--partition"))
     ways.partition = parse_partition_method(options.request.partition);
-  kit::Progress progress(setup.machine->process().value == 0 ? stderr : nullptr);
-  const std::vector<Row> rows = run_cases(setup, cases_for(options.request), ways, progress);
-  progress.clear();
-  if (setup.machine->process().value != 0) return 0;
-  tess::print_text(table(rows));
-  if (!options.json.empty()) kit::write_file(options.json, json(rows));
-  return std::ranges::all_of(rows, &Row::ok) ? 0 : 1;
+  kit::Cases<Row> report(columns);
+  for (Row& row : run_cases(setup, cases_for(options.request), ways, driver.progress())) {
+    driver.progress().clear();
+    report.add(std::move(row));
+  }
+  if (!driver.speaks()) return 0;
+  return report.finish(driver,
+                       "met: largest |value - truth| over the points found; runs: with 1, 6 and 16 "
+                       "parts, on this machine and simulated ones\n");
 }
 
 }  // namespace

@@ -112,7 +112,11 @@ std::string refusal(const Case& c) {
 
 Row judge(const Case& c, const std::vector<Answer>& answers, const Answer* before,
           const OutsidePolicy& policy) {
-  Row row{.name = c.name, .parameter = c.parameter, .value = c.value};
+  Row row;
+  row.name = c.name;
+  row.parameter = c.parameter;
+  row.value = c.value;
+  row.tolerance = c.tolerance;
   row.n_points = c.target.n_points();
   row.n_runs = answers.size();
   row.note = refusal(c);
@@ -121,19 +125,19 @@ Row judge(const Case& c, const std::vector<Answer>& answers, const Answer* befor
     return row;
   }
   const Answer& first = answers.front();
+  double error = 0;
   for (std::size_t v = 0; v < row.n_points; ++v) {
     row.snapped += first.status[v] == Status::snapped ? 1U : 0U;
     if (first.status[v] == Status::outside) {
       ++row.outside;
       if (has_wrong_value_outside(policy, first.values[v]))
-        row.error = std::numeric_limits<double>::infinity();
+        error = std::numeric_limits<double>::infinity();
       row.lost += is_held(c.source, c.target.points[v]) ? 1U : 0U;
     } else if (c.truth.empty()) {
       row.lost += names_a_donor(c, v, first.values[v]) ? 0U : 1U;
     } else if (!std::isnan(c.truth[v])) {
-      const double error = std::abs(first.values[v] - c.truth[v]);
-      row.error =
-          std::isnan(error) ? std::numeric_limits<double>::infinity() : std::max(row.error, error);
+      const double now = std::abs(first.values[v] - c.truth[v]);
+      error = std::isnan(now) ? std::numeric_limits<double>::infinity() : std::max(error, now);
     }
   }
   if (c.outside && row.outside > *c.outside)
@@ -141,7 +145,8 @@ Row judge(const Case& c, const std::vector<Answer>& answers, const Answer* befor
   for (const Answer& answer : answers) row.same_bits = row.same_bits && same(first, answer, {});
   if (before != nullptr && !c.order.empty())
     row.same_bits = row.same_bits && same(*before, first, c.order);
-  row.ok = row.lost == 0 && row.same_bits && row.error <= c.tolerance &&
+  row.met = error;
+  row.ok = row.lost == 0 && row.same_bits && error <= c.tolerance &&
            (!c.outside || row.outside == *c.outside);
   return row;
 }

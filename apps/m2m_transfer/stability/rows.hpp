@@ -1,6 +1,7 @@
 // Runs the cases of the stability report on several machines, and judges them.
 #pragma once
 
+#include "apps/kit/cases.hpp"
 #include "apps/kit/progress.hpp"
 #include "apps/m2m_transfer/stability/cases.hpp"
 #include "m2m/partition_method.hpp"
@@ -14,17 +15,14 @@
 
 namespace m2m_transfer::stability {
 
-struct Row {
-  std::string name, parameter;
-  double value = 0;
+/// `met`: the largest |value - truth| over the points found; `note`: why the mesh was refused, and
+/// then nothing else is known.
+struct Row : kit::Case {
   std::size_t n_points = 0;
   std::size_t lost = 0;  ///< outside, or at a wrong donor, though the source holds the point
   std::size_t snapped = 0, outside = 0;
-  double error = 0;  ///< largest |value - truth| over the points found
   std::size_t n_runs = 0;
   bool same_bits = true;  ///< values and statuses in all runs
-  std::string note{};     ///< why the mesh was refused
-  bool ok = true;
 };
 
 /// The result of one case in one run.
@@ -55,8 +53,5 @@ TaskOf<Answer> answer_of(const Case& c, std::int32_t n_parts, const Ways& ways);
 /// 6 and 16 PEs. Rows stay empty on processes other than the first.
 [[nodiscard]] std::vector<Row> run_cases(Setup& setup, const std::vector<Case>& cases,
                                          const Ways& ways, kit::Progress& progress);
-
-[[nodiscard]] std::string table(const std::vector<Row>& rows);
-[[nodiscard]] std::string json(const std::vector<Row>& rows);
 
 }  // namespace m2m_transfer::stability

@@ -18,60 +18,54 @@ bool is_smooth(const std::string& field) {
   return field == "gaussian" || field == "sin";
 }
 
-/// The two reports of a kind and policy with the shortest edges, the finest first.
-std::vector<const TransferReport*> finest_two(const Study& study, const TransferReport& like) {
-  std::vector<const TransferReport*> out;
-  for (const TransferReport& r : study.reports)
-    if (r.kind == like.kind && r.policy == like.policy && r.tally.counts[3] == 0) out.push_back(&r);
-  std::ranges::sort(out, {}, [](const TransferReport* r) { return r->source_edge; });
+/// The two rows of a trend with the shortest edges, the finest first.
+std::vector<FieldRow> finest_two(const std::vector<FieldRow>& rows, const Trend& trend) {
+  std::vector<FieldRow> out;
+  for (const FieldRow& row : rows)
+    if (trend.has(row) && row.report->tally.counts[3] == 0) out.push_back(row);
+  std::ranges::sort(out, {}, [](const FieldRow& row) { return row.report->source_edge; });
   if (out.size() > 2) out.resize(2);
   return out;
 }
 
 }  // namespace
 
-std::vector<Check> checks(const Study& study) {
+std::vector<Check> checks(const std::vector<TransferReport>& reports) {
   std::vector<Check> out;
-  for (const TransferReport& r : study.reports)
-    for (const FieldError& field : r.fields) {
-      if (!field.bound || field.found.n_vertices == 0) continue;
-      // Values up to about ten, and coordinates in the formula, round.
-      const double rounding = 1e-12 + 1e-9 * *field.bound;
-      out.push_back({fmt::format("{}, {} -> {}, {}: Linf at most (3/16) h^2 max|D2f|", r.kind,
-                                 r.source, r.target, field.name),
-                     field.found.linf, *field.bound + rounding});
-    }
-  for (const Trend& trend : trends(study)) {
+  const std::vector<FieldRow> rows = rows_of(reports);
+  for (const auto& [r, field] : rows) {
+    if (!field->bound || field->found.n_vertices == 0) continue;
+    // Values up to about ten, and coordinates in the formula, round.
+    const double rounding = 1e-12 + 1e-9 * *field->bound;
+    out.push_back({fmt::format("{}, {} -> {}, {}: Linf at most (3/16) h^2 max|D2f|", r->kind,
+                               r->source, r->target, field->name),
+                   field->found.linf, *field->bound + rounding});
+  }
+  for (const Trend& trend : trends(reports)) {
     if (trend.exact || !is_smooth(trend.field)) continue;
-    TransferReport like;
-    like.kind = trend.kind;
-    like.policy = trend.policy;
-    const auto two = finest_two(study, like);
-    if (two.size() < 2 || two[0]->source_edge > 0.9 * two[1]->source_edge) continue;
-    const auto l2 = [&](const TransferReport& r) {
-      return std::ranges::find(r.fields, trend.field, &FieldError::name)->norms.l2;
-    };
-    const double order =
-        std::log(l2(*two[1]) / l2(*two[0])) / std::log(two[1]->source_edge / two[0]->source_edge);
-    out.push_back({fmt::format("{}, {} to {}, {}: order of L2 at least", trend.kind, two[1]->source,
-                               two[0]->source, trend.field),
+    const std::vector<FieldRow> two = finest_two(rows, trend);
+    if (two.size() < 2) continue;
+    const TransferReport &fine = *two[0].report, &coarse = *two[1].report;
+    if (fine.source_edge > 0.9 * coarse.source_edge) continue;
+    const double order = std::log(two[1].field->norms.l2 / two[0].field->norms.l2) /
+                         std::log(coarse.source_edge / fine.source_edge);
+    out.push_back({fmt::format("{}, {} to {}, {}: order of L2 at least", trend.kind, coarse.source,
+                               fine.source, trend.field),
                    order, least_order(trend.kind), false});
   }
   return out;
 }
 
-bool all_ok(const std::vector<Check>& checks) {
-  return std::ranges::all_of(checks, &Check::ok);
-}
-
-std::string table(const std::vector<Check>& checks) {
-  std::size_t wide = 6;
-  for (const Check& check : checks) wide = std::max(wide, check.what.size());
-  std::string out = "checks\n";
-  for (const Check& check : checks)
-    out += fmt::format("  {:<{}} {:>11.4e}: {:>11.4e}  {}\n", check.what, wide, check.limit,
-                       check.value, check.ok() ? "ok" : "FAILED");
-  return out;
+const kit::Rows<Check>& check_rows() {
+  using kit::of;
+  static constexpr kit::Column<Check> columns[] = {
+      {"what", "check", "<", of<&Check::what>},
+      {"limit", "limit", "11.4e", of<&Check::limit>},
+      {"value", "measured", "11.4e", of<&Check::value>},
+      {"ok", "", nullptr, [](const Check& check) -> kit::Json { return check.ok(); }},
+      {"", "", "<", [](const Check& check) -> kit::Json { return check.ok() ? "ok" : "FAILED"; }}};
+  static const kit::Rows<Check> rows(columns);
+  return rows;
 }
 
 std::string failures(const std::vector<Check>& checks) {

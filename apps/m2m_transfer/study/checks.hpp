@@ -19,11 +19,11 @@ struct Check {
 /// Per pair of meshes: the largest error of linear interpolation over the vertices found, against
 /// its bound (input/formulas.hpp) plus rounding. Per kind: the order of the L2 error between the
 /// two finest meshes. Both for fields with known derivatives only.
-[[nodiscard]] std::vector<Check> checks(const Study& study);
+[[nodiscard]] std::vector<Check> checks(const std::vector<TransferReport>& reports);
 
-[[nodiscard]] bool all_ok(const std::vector<Check>& checks);
-[[nodiscard]] std::string table(const std::vector<Check>& checks);
-/// A line per check that failed, with figure and bound, and what to do about an order.
+[[nodiscard]] const kit::Rows<Check>& check_rows();
+/// A line per check that failed, with figure and bound, and what to do about an order. Empty if none
+/// failed.
 [[nodiscard]] std::string failures(const std::vector<Check>& checks);
 
 }  // namespace m2m_transfer

@@ -1,14 +1,9 @@
 #include "apps/m2m_transfer/study/steps.hpp"
 
-#include "apps/kit/chart.hpp"
-#include "apps/kit/json.hpp"
-#include "apps/kit/quoting.hpp"
-#include "apps/kit/write_file.hpp"
 #include "apps/m2m_transfer/run/steps.hpp"
 
 #include <algorithm>
 #include <array>
-#include <fmt/format.h>
 
 namespace m2m_transfer {
 namespace {
@@ -55,56 +50,37 @@ Task measure_steps(Problem& problem, std::int32_t repeat, kit::Progress& progres
   co_await destroy(meshes);
 }
 
-std::string table(const std::vector<StepsRow>& rows) {
-  std::size_t wide = 6;
-  for (const StepsRow& row : rows) wide = std::max({wide, row.source.size(), row.target.size()});
-  std::string out =
-      fmt::format("{:<{}} {:<{}} {:>6} {:>14} {:>14} {:>7}  {}\n", "source", wide, "target", wide,
-                  "steps", "kept, s/step", "again, s/step", "gain", "same bits");
-  for (const StepsRow& row : rows)
-    out += fmt::format("{:<{}} {:<{}} {:>6} {:>14.6f} {:>14.6f} {:>7.1f}  {}\n", row.source, wide,
-                       row.target, wide, row.steps, row.kept, row.again, row.again / row.kept,
-                       row.ok() ? "yes" : "no  FAILED");
-  return out + "kept: one search, then the steps; again: a search in every step\n";
+const kit::Rows<StepsRow>& steps_rows() {
+  using R = const StepsRow&;
+  using kit::Json;
+  using kit::of;
+  static constexpr kit::Column<StepsRow> columns[] = {
+      {"source", "source", "<", of<&StepsRow::source>},
+      {"target", "target", "<", of<&StepsRow::target>},
+      {"steps", "steps", "6", of<&StepsRow::steps>},
+      {"seconds_per_step_kept", "kept, s/step", "14.6f", of<&StepsRow::kept>},
+      {"seconds_per_step_again", "again, s/step", "14.6f", of<&StepsRow::again>},
+      {"", "gain", "7.1f", [](R r) -> Json { return r.again / r.kept; }},
+      {"same_bits", "same bits", "<", [](R r) -> Json { return r.ok(); }},
+      {"result_hash", "", nullptr, [](R r) -> Json { return kit::hex(r.hash); }},
+      {"", "", "<", [](R r) -> Json { return r.ok() ? "" : "FAILED"; }}};
+  static const kit::Rows<StepsRow> rows(columns);
+  return rows;
 }
 
-std::string json(const std::vector<StepsRow>& rows) {
-  kit::Json whole;
-  for (const StepsRow& row : rows)
-    whole["rows"].push_back({{"source", row.source},
-                             {"target", row.target},
-                             {"steps", row.steps},
-                             {"seconds_per_step_kept", row.kept},
-                             {"seconds_per_step_again", row.again},
-                             {"same_bits", row.ok()},
-                             {"result_hash", fmt::format("{:016x}", row.hash)}});
-  return kit::json_text(whole);
-}
-
-std::string write(const std::vector<StepsRow>& rows, const std::string& folder) {
-  std::string csv = "source,target,steps,kept,again,same_bits,result_hash\n";
+Picture picture_of(const std::vector<StepsRow>& rows) {
   kit::Chart chart{.title = "the time of a step with donors that are kept",
                    .x_label = "steps",
                    .y_label = "seconds per step",
                    .x_log = true,
                    .y_log = true};
   for (const StepsRow& row : rows) {
-    csv += fmt::format("{},{},{},{},{},{},{:016x}\n", kit::csv_field(row.source),
-                       kit::csv_field(row.target), row.steps, row.kept, row.again,
-                       row.ok() ? "yes" : "no", row.hash);
     const std::string name = row.source + " -> " + row.target;
-    if (chart.series.empty() || chart.series.back().name != name + ", again") {
-      chart.series.push_back({name});
-      chart.series.push_back({name + ", again", {}, kit::Style::dashes});
-    }
-    const auto x = static_cast<double>(row.steps);
-    chart.series[chart.series.size() - 2].points.push_back({x, row.kept});
-    chart.series.back().points.push_back({x, row.again});
+    kit::add_point(chart, name, row.steps, row.kept);
+    kit::add_point(chart, name + ", again", row.steps, row.again);
+    chart.series.back().style = kit::Style::dashes;
   }
-  kit::write_file(folder + "/steps.csv", csv);
-  kit::write_file(folder + "/steps.json", json(rows));
-  const bool drawn = kit::write_svg(folder + "/steps.svg", chart);
-  return fmt::format("written: {}/steps.csv, steps.json{}\n", folder, drawn ? ", steps.svg" : "");
+  return {"steps_time", std::move(chart)};
 }
 
 }  // namespace m2m_transfer

@@ -3,7 +3,9 @@
 #pragma once
 
 #include "apps/kit/progress.hpp"
+#include "apps/kit/rows.hpp"
 #include "apps/m2m_transfer/input/problem.hpp"
+#include "apps/m2m_transfer/output/folder.hpp"
 #include "runtime/runtime.hpp"
 
 #include <cstdint>
@@ -27,9 +29,7 @@ struct StepsRow {
 Task measure_steps(Problem& problem, std::int32_t repeat, kit::Progress& progress,
                    std::vector<StepsRow>& rows);
 
-[[nodiscard]] std::string table(const std::vector<StepsRow>& rows);
-[[nodiscard]] std::string json(const std::vector<StepsRow>& rows);
-/// Writes steps.csv, steps.json and steps.svg. Returns a line that lists them.
-[[nodiscard]] std::string write(const std::vector<StepsRow>& rows, const std::string& folder);
+[[nodiscard]] const kit::Rows<StepsRow>& steps_rows();
+[[nodiscard]] Picture picture_of(const std::vector<StepsRow>& rows);
 
 }  // namespace m2m_transfer

@@ -1,6 +1,5 @@
 #include "apps/m2m_transfer/study/study.hpp"
 
-#include "apps/kit/fit.hpp"
 #include "apps/m2m_transfer/input/lists.hpp"
 #include "m2m/kuhn.hpp"
 #include "runtime/core/error.hpp"
@@ -83,37 +82,6 @@ std::vector<Request> plan_study(const Request& request, const std::vector<std::s
       }
     }
   return requests;
-}
-
-std::vector<Trend> trends(const Study& study) {
-  std::vector<Trend> all;
-  for (auto first = study.reports.begin(); first != study.reports.end();) {
-    const auto last = std::find_if(first, study.reports.end(), [&](const TransferReport& r) {
-      return r.policy != first->policy || r.kind != first->kind;
-    });
-    for (std::size_t f = 0; f < first->fields.size(); ++f) {
-      std::vector<kit::Point> l2_edge, linf_edge, l2_seconds, linf_seconds;
-      bool exact = true;
-      for (auto r = first; r != last; ++r) {
-        const ErrorNorms& norms = r->fields[f].norms;
-        exact = exact && norms.l2_relative < 1e-12;
-        l2_edge.push_back({r->source_edge, norms.l2});
-        linf_edge.push_back({r->source_edge, norms.linf});
-        l2_seconds.push_back({r->seconds.transfer(), norms.l2});
-        linf_seconds.push_back({r->seconds.transfer(), norms.linf});
-      }
-      Trend trend{first->fields[f].name, first->kind, first->policy, exact, {}, {}, {}, {}};
-      if (!exact) {
-        trend.l2_of_edge = kit::fitted_power(l2_edge);
-        trend.linf_of_edge = kit::fitted_power(linf_edge);
-        trend.l2_of_seconds = kit::fitted_power(l2_seconds);
-        trend.linf_of_seconds = kit::fitted_power(linf_seconds);
-      }
-      all.push_back(std::move(trend));
-    }
-    first = last;
-  }
-  return all;
 }
 
 }  // namespace m2m_transfer

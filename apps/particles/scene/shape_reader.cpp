@@ -1,7 +1,7 @@
 #include "apps/particles/scene/box_union.hpp"
 #include "apps/particles/scene/readers.hpp"
-#include "collide/read_surface.hpp"
 #include "collide/dn_field/shapes.hpp"
+#include "collide/read_surface.hpp"
 #include "runtime/core/error.hpp"
 
 #include <algorithm>

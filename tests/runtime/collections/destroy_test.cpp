@@ -80,7 +80,7 @@ tess::Task use_and_end_often(int n_rounds, std::vector<std::size_t>& bytes) {
 
 template <class Main>
 tests::Ending run(std::int32_t n_pes, Main main) {
-  return tests::run(tess::text("pes=", n_pes, ",cost=100ns"), std::move(main));
+  return tests::run(tess::text("pes=", n_pes, ""), std::move(main));
 }
 
 TEST_CASE("ten thousand arrays, groups and balancers that end leave no memory behind",

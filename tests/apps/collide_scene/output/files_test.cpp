@@ -99,12 +99,15 @@ TEST_CASE("the picture shows scenes of points, far away and of one place",
 
 TEST_CASE("files that cannot be written are refused before the run", "[apps][collide_scene]") {
   const tess::test::Scratch scratch;
-  Options options;
-  options.json = scratch.path("none/x.json");
-  CHECK(tess::test::message_of([&] { prepare_files(options); }).starts_with("--json "));
-  options.json.clear();
-  options.out = scratch.path("here/scene");
-  prepare_files(options);
-  std::filesystem::create_directories(options.out + "_hits.vtp");
-  CHECK(tess::test::message_of([&] { prepare_files(options); }).starts_with("--out "));
+  kit::FileNames files;
+  const std::string prefix = scratch.path("here/scene");
+  prepare_files(prefix, endings(), files);
+  CHECK(tess::test::message_of([&] {
+          files.writes("--json", prefix + ".svg");
+        }).starts_with("--json "));
+  std::filesystem::create_directories(prefix + "_hits.vtp");
+  kit::FileNames again;
+  CHECK(tess::test::message_of([&] {
+          prepare_files(prefix, endings(), again);
+        }).starts_with("--out "));
 }

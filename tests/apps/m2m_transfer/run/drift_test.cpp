@@ -1,14 +1,9 @@
 #include "apps/m2m_transfer/run/drift.hpp"
 
-#include "apps/m2m_transfer/driver.hpp"
-#include "runtime/machine/simulated.hpp"
-#include "runtime/machine/threads.hpp"
-#include "tests/support/catch.hpp"
-#include "tests/support/scratch.hpp"
+#include "tests/apps/m2m_transfer/program.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 using namespace tess;
 using namespace m2m_transfer;
@@ -18,19 +13,13 @@ using tess::test::slurp;
 
 namespace {
 
-nlohmann::json rows_of(Setup&& setup, std::int32_t n_chares) {
+nlohmann::json rows_of(Setup&& setup, const std::string& chares) {
   const Scratch scratch;
-  DriverOptions options;
-  options.request.source = "kuhn:6@0.2";
-  options.request.target = "kuhn:7@0.1";
-  options.request.fields = {"gaussian", "1"};
-  options.request.n_chares = n_chares;
-  options.round_trips = "1,2,10";
-  options.json = scratch.path("drift.json");
-  options.plot = scratch.path("plots");
-  REQUIRE(drive(setup, options) == 0);
-  const std::string csv = slurp(options.plot + "/drift.csv");
-  const nlohmann::json rows = nlohmann::json::parse(slurp(options.json))["rows"];
+  const std::string plots = scratch.path("plots");
+  const nlohmann::json rows = tests::results_of(
+      std::move(setup), {"kuhn:6@0.2", "kuhn:7@0.1", "--fields", "gaussian,1", "--chares", chares,
+                         "--round-trips", "1,2,10", "--plot", plots});
+  const std::string csv = slurp(plots + "/drift.csv");
   CHECK(std::count(csv.begin(), csv.end(), '\n') == 1 + static_cast<long>(rows.size()));
   return rows;
 }
@@ -44,15 +33,14 @@ TEST_CASE("round trips are ascending numbers", "[apps][drift]") {
 }
 
 TEST_CASE("the drift table is the same bit for bit on every machine", "[apps][drift]") {
-  const nlohmann::json first = rows_of({make_threads_machine(1), {}}, 1);
-  CHECK(rows_of({make_threads_machine(2), {}}, 6) == first);
-  CHECK(rows_of({make_simulated_machine(parse_simulated("pes=6,seed=3")), {}}, 16) == first);
-  CHECK(rows_of({make_simulated_machine(parse_simulated("pes=16,per-process=1,seed=5")), {}}, 16) ==
-        first);
+  const nlohmann::json first = rows_of(tests::threads(1), "1");
+  CHECK(rows_of(tests::threads(2), "6") == first);
+  CHECK(rows_of(tests::simulated("pes=6,seed=3"), "16") == first);
+  CHECK(rows_of(tests::simulated("pes=16,per-process=1,seed=5"), "16") == first);
 }
 
 TEST_CASE("each kind keeps in round trips what it promises to keep", "[apps][drift]") {
-  const nlohmann::json rows = rows_of({make_threads_machine(2), {}}, 4);
+  const nlohmann::json rows = rows_of(tests::threads(2), "4");
   CHECK(rows.size() == all_transfer_kinds.size() * 3 * 2);
   for (const auto& row : rows) {
     INFO(row.dump());

@@ -1,165 +1,141 @@
 // Graphs of meshes, and meshes that move, on several machines.
 #include "apps/m2m_transfer/run/steps.hpp"
 
-#include "apps/m2m_transfer/driver.hpp"
 #include "m2m/field_file.hpp"
 #include "m2m/kuhn.hpp"
 #include "m2m/read_mesh.hpp"
 #include "m2m/write_vtu.hpp"
-#include "runtime/machine/simulated.hpp"
-#include "runtime/machine/threads.hpp"
-#include "tests/support/catch.hpp"
-#include "tests/support/scratch.hpp"
+#include "tests/apps/m2m_transfer/program.hpp"
 
 #include <algorithm>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <string>
 
 using namespace tess;
 using namespace m2m_transfer;
 using tess::test::Scratch;
 using tess::test::slurp;
+using tests::results_of;
+using tests::simulated;
+using tests::threads;
+using tests::Words;
 
 namespace {
 
-nlohmann::json pairs_of(Setup&& setup, DriverOptions options) {
-  const Scratch scratch;
-  options.json = scratch.path("report.json");
-  REQUIRE(drive(setup, options) == 0);
-  return nlohmann::json::parse(slurp(options.json))["pairs"];
+/// The words for these meshes with two fields, so that a pair has two rows.
+Words words_of(Words meshes, const std::string& pairs, const Words& more = {}) {
+  if (!pairs.empty()) meshes.insert(meshes.end(), {"--pairs", pairs});
+  meshes.insert(meshes.end(), {"--fields", "sin,x*y"});
+  meshes.insert(meshes.end(), more.begin(), more.end());
+  return meshes;
 }
 
-Setup threads(int n) {
-  return {make_threads_machine(n), {}};
-}
-Setup simulated(const char* keys) {
-  return {make_simulated_machine(parse_simulated(keys)), {}};
-}
-
-DriverOptions options_of(const std::vector<std::string>& meshes, const std::string& pairs) {
-  DriverOptions options;
-  Request& request = options.request;
-  request.source = meshes[0];
-  request.target = meshes[1];
-  request.more.assign(meshes.begin() + 2, meshes.end());
-  request.pairs = pairs;
-  request.fields = {"sin", "x*y"};
-  request.policy = "nearest";
-  return options;
+Words with(Words words, const Words& more) {
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
 }
 
 /// All figures of the result, which depend on no machine.
-std::vector<std::string> figures(const nlohmann::json& pairs) {
+std::vector<std::string> figures(const nlohmann::json& rows) {
   std::vector<std::string> out;
-  for (const auto& pair : pairs)
+  for (const auto& row : rows)
     for (const char* name :
-         {"result_hash", "inside", "outside", "farthest", "l2", "rms", "linf", "found", "fields"})
-      out.push_back(pair[name].dump());
+         {"result_hash", "inside", "outside", "farthest", "l2", "rms", "linf", "found", "l2_found",
+          "rms_found", "linf_found", "integral_source", "integral_target"})
+      out.push_back(row[name].dump());
   return out;
 }
 
 /// The same results on one thread, and on other machines with other numbers of parts.
-nlohmann::json same_everywhere(DriverOptions options) {
-  options.request.n_chares = 1;
-  const nlohmann::json first = pairs_of(threads(1), options);
-  options.request.n_chares = 6;
-  CHECK(figures(pairs_of(threads(2), options)) == figures(first));
-  options.request.n_chares = 16;
-  CHECK(figures(pairs_of(simulated("pes=6,seed=2"), options)) == figures(first));
-  CHECK(figures(pairs_of(simulated("pes=5,per-process=1,seed=7"), options)) == figures(first));
+nlohmann::json same_everywhere(const Words& words) {
+  const auto parts = [&](const char* n) { return with(words, {"--chares", n}); };
+  const nlohmann::json first = results_of(threads(1), parts("1"));
+  CHECK(figures(results_of(threads(2), parts("6"))) == figures(first));
+  CHECK(figures(results_of(simulated("pes=6,seed=2"), parts("16"))) == figures(first));
+  CHECK(figures(results_of(simulated("pes=5,per-process=1,seed=7"), parts("16"))) ==
+        figures(first));
   return first;
 }
 
 }  // namespace
 
 TEST_CASE("a graph has the same bits on every machine, step after step", "[apps][graph]") {
-  auto options =
-      options_of({"kuhn:4@0.2", "kuhn:5", "kuhn:6@0.1", "kuhn:3"}, "A:B,A:C,B:D,C:D,D:A,B:C");
-  options.request.steps = 3;
-  const nlohmann::json pairs = same_everywhere(options);
-  CHECK(pairs.size() == 6);
-  for (const auto& pair : pairs) CHECK(pair["outside"] == 0);
+  const nlohmann::json rows =
+      same_everywhere(words_of({"kuhn:4@0.2", "kuhn:5", "kuhn:6@0.1", "kuhn:3"},
+                               "A:B,A:C,B:D,C:D,D:A,B:C", {"--steps", "3"}));
+  CHECK(rows.size() == 6 * 2);
+  for (const auto& row : rows) CHECK(row["outside"] == 0);
 }
 
 TEST_CASE("a chain of pairs gives what transfers one by one give", "[apps][graph]") {
-  const nlohmann::json chain =
-      pairs_of(threads(2), options_of({"kuhn:4@0.2", "kuhn:5", "kuhn:6"}, "A:B,B:C"));
+  const Words meshes{"kuhn:4@0.2", "kuhn:5", "kuhn:6"};
+  const nlohmann::json chain = results_of(threads(2), words_of(meshes, "A:B,B:C"));
   CHECK(chain[0]["result_hash"] ==
-        pairs_of(threads(2), options_of({"kuhn:4@0.2", "kuhn:5"}, ""))[0]["result_hash"]);
+        results_of(threads(2), words_of({"kuhn:4@0.2", "kuhn:5"}, ""))[0]["result_hash"]);
   // The second pair reads what the first wrote: interpolated twice, so less exact.
-  const nlohmann::json direct = pairs_of(threads(2), options_of({"kuhn:4@0.2", "kuhn:6"}, ""));
-  CHECK(chain[1]["l2"].get<double>() > direct[0]["l2"].get<double>());
+  const nlohmann::json direct = results_of(threads(2), words_of({"kuhn:4@0.2", "kuhn:6"}, ""));
+  CHECK(chain[2]["l2"].get<double>() > direct[0]["l2"].get<double>());
   // In the other order B is read first, so it starts with the formulas.
-  const nlohmann::json other =
-      pairs_of(threads(2), options_of({"kuhn:4@0.2", "kuhn:5", "kuhn:6"}, "B:C,A:B"));
-  CHECK(other[0]["result_hash"] != chain[1]["result_hash"]);
+  const nlohmann::json other = results_of(threads(2), words_of(meshes, "B:C,A:B"));
+  CHECK(other[0]["result_hash"] != chain[2]["result_hash"]);
 }
 
 TEST_CASE("two pairs with one target give the second one's values, and both results are reported",
           "[apps][graph]") {
   const nlohmann::json both =
-      pairs_of(threads(2), options_of({"kuhn:4@0.2", "kuhn:5", "kuhn:6"}, "A:C,B:C"));
+      results_of(threads(2), words_of({"kuhn:4@0.2", "kuhn:5", "kuhn:6"}, "A:C,B:C"));
   CHECK(both[0]["result_hash"] ==
-        pairs_of(threads(1), options_of({"kuhn:4@0.2", "kuhn:6"}, ""))[0]["result_hash"]);
-  CHECK(both[0]["result_hash"] != both[1]["result_hash"]);
+        results_of(threads(1), words_of({"kuhn:4@0.2", "kuhn:6"}, ""))[0]["result_hash"]);
+  CHECK(both[0]["result_hash"] != both[2]["result_hash"]);
 }
 
 TEST_CASE("a pair that is overwritten is compared with the field that it moved", "[apps][graph]") {
   // A and B have moved apart, and the formula moves with each. Linear fields are exact.
-  auto options = options_of({"kuhn:4", "kuhn:4", "kuhn:3"}, "A:C,B:C");
-  options.request.fields = {"linear"};
-  options.request.steps = 2;
-  options.request.moves = {"A:translate(0.05,0,0)"};
-  const nlohmann::json pairs = pairs_of(threads(2), options);
-  CHECK(pairs[0]["outside"].get<int>() > 0);
-  CHECK(pairs[0]["found"]["linf"].get<double>() < 1e-12);
-  CHECK(pairs[1]["linf"].get<double>() < 1e-12);
+  const nlohmann::json rows =
+      results_of(threads(2), {"kuhn:4", "kuhn:4", "kuhn:3", "--pairs", "A:C,B:C", "--fields",
+                              "linear", "--steps", "2", "--move", "A:translate(0.05,0,0)"});
+  CHECK(rows[0]["outside"].get<int>() > 0);
+  CHECK(rows[0]["linf_found"].get<double>() < 1e-12);
+  CHECK(rows[1]["linf"].get<double>() < 1e-12);
 }
 
 TEST_CASE("the integral of the source is that of the values which the pair read", "[apps][graph]") {
-  auto options = options_of({"kuhn:4@0.2", "kuhn:5", "kuhn:6"}, "A:B,B:C,C:A");
-  const auto source = [](const nlohmann::json& pair) {
-    return pair["fields"][1]["integral"]["source"].get<double>();
-  };
-  const nlohmann::json cycle = pairs_of(threads(2), options);
-  options.request.pairs = "A:B,B:C";  // without the pair that writes A later
-  CHECK(source(cycle[0]) == source(pairs_of(threads(2), options)[0]));
-  const double target = cycle[0]["fields"][1]["integral"]["target"].get<double>();
-  CHECK(source(cycle[1]) == target);
+  const Words meshes{"kuhn:4@0.2", "kuhn:5", "kuhn:6"};
+  const nlohmann::json cycle = results_of(threads(2), words_of(meshes, "A:B,B:C,C:A"));
+  // Without the pair that writes A later.
+  const nlohmann::json chain = results_of(threads(2), words_of(meshes, "A:B,B:C"));
+  CHECK(cycle[1]["integral_source"] == chain[1]["integral_source"]);
+  CHECK(cycle[3]["integral_source"] == cycle[1]["integral_target"]);
 }
 
 TEST_CASE("a mesh that moves is searched again, with the same bits on every machine",
           "[apps][motion]") {
-  auto options = options_of({"kuhn:6@0.2", "kuhn:5"}, "");
-  options.request.steps = 4;
-  options.request.moves = {"B:rotate(0,0,1,15deg)", "B:translate(0.05,0,0)"};
-  const nlohmann::json pairs = same_everywhere(options);
-  CHECK(pairs[0]["searches"] == 4);
-  CHECK(pairs[0]["outside"].get<int>() > 0);
-  CHECK(pairs[0]["seconds"]["search_again"].get<double>() > 0);
+  const nlohmann::json rows = same_everywhere(words_of(
+      {"kuhn:6@0.2", "kuhn:5"}, "",
+      {"--steps", "4", "--move", "B:rotate(0,0,1,15deg)", "--move", "B:translate(0.05,0,0)"}));
+  CHECK(rows[0]["searches"] == 4);
+  CHECK(rows[0]["outside"].get<int>() > 0);
+  CHECK(rows[0]["search_again_seconds"].get<double>() > 0);
 }
 
 TEST_CASE("meshes that move together transfer as if they stood still", "[apps][motion]") {
-  auto options = options_of({"kuhn:6@0.2", "kuhn:5"}, "");
-  options.request.fields = {"linear"};
-  options.request.steps = 5;
-  // About a common point, so that both stay together; the formula moves with its mesh.
-  options.request.moves = {"A:rotate(1,1,0,20deg,0,0,0)", "B:rotate(1,1,0,20deg,0,0,0)"};
   const Scratch scratch;
-  options.picture = scratch.path("cut.svg");
-  const nlohmann::json pairs = pairs_of(threads(2), options);
-  CHECK(pairs[0]["linf"].get<double>() < 1e-12);
-  const std::string picture = slurp(options.picture);
+  const Words words{"kuhn:6@0.2", "kuhn:5", "--fields", "linear", "--steps", "5"};
+  // About a common point, so that both stay together; the formula moves with its mesh.
+  const nlohmann::json rows = results_of(
+      threads(2),
+      with(words, {"--move", "A:rotate(1,1,0,20deg,0,0,0)", "--move", "B:rotate(1,1,0,20deg,0,0,0)",
+                   "--picture", scratch.path("cut.svg")}));
+  CHECK(rows[0]["linf"].get<double>() < 1e-12);
+  const std::string picture = slurp(scratch.path("cut.svg"));
   const std::size_t last = picture.rfind("text-anchor=\"end\">");
   REQUIRE(last != std::string::npos);
   CHECK(std::stod(picture.substr(last + 18)) < 1e-12);  // the greatest error drawn
-  options.picture.clear();
   // The target alone: the linear field is exact where it is found, at the new place.
-  options.request.moves = {"B:translate(0.1,0.05,0)"};
-  const nlohmann::json alone = pairs_of(threads(2), options);
+  const nlohmann::json alone =
+      results_of(threads(2), with(words, {"--move", "B:translate(0.1,0.05,0)"}));
   CHECK(alone[0]["outside"].get<int>() > 0);
-  CHECK(alone[0]["found"]["linf"].get<double>() < 1e-12);
+  CHECK(alone[0]["linf_found"].get<double>() < 1e-12);
 }
 
 TEST_CASE("PE 0 holds a mesh only if it cannot be read in ranges, or Zoltan cuts it",
@@ -188,14 +164,12 @@ TEST_CASE("PE 0 holds a mesh only if it cannot be read in ranges, or Zoltan cuts
 TEST_CASE("a result has the points of the mesh as it moved, whether PE 0 held it or not",
           "[apps][memory]") {
   const Scratch scratch;
-  auto options = options_of({"kuhn:4@0.2", "kuhn:5@0.1"}, "");
-  options.request.steps = 3;
-  options.request.moves = {"B:rotate(0,0,1,5deg)", "B:translate(0.01,0,0)"};
-  for (const char* partition : {"curve", "rcb"}) {
-    options.request.partition = partition;
-    options.out = scratch.path(std::string(partition) + ".vtu");
-    (void)pairs_of(threads(2), options);
-  }
+  const Words words = words_of(
+      {"kuhn:4@0.2", "kuhn:5@0.1"}, "",
+      {"--steps", "3", "--move", "B:rotate(0,0,1,5deg)", "--move", "B:translate(0.01,0,0)"});
+  for (const char* partition : {"curve", "rcb"})
+    (void)results_of(threads(2), with(words, {"--partition", partition, "--out",
+                                              scratch.path(std::string(partition) + ".vtu")}));
   CHECK(slurp(scratch.path("curve.vtu")) == slurp(scratch.path("rcb.vtu")));
   const TetMesh moved = read_mesh(scratch.path("curve.vtu")), start = kuhn_mesh({5, 0.1});
   REQUIRE(moved.n_points() == start.n_points());
@@ -204,16 +178,10 @@ TEST_CASE("a result has the points of the mesh as it moved, whether PE 0 held it
 
 TEST_CASE("all parts of a .pvtu together have the result that one file has", "[apps][memory]") {
   const Scratch scratch;
-  auto options = options_of({"kuhn:4@0.2", "kuhn:5@0.1"}, "");
-  options.request.fields = {"sin", "x - 2*y"};
-  options.request.steps = 2;
-  options.request.moves = {"B:translate(0.1,0,0)"};
-  options.request.n_chares = 5;
-  options.request.kind = "second-order";
-  for (const char* name : {"whole.vtu", "parts.pvtu"}) {
-    options.out = scratch.path(name);
-    (void)pairs_of(threads(2), options);
-  }
+  for (const char* name : {"whole.vtu", "parts.pvtu"})
+    (void)results_of(threads(2), {"kuhn:4@0.2", "kuhn:5@0.1", "--fields", "sin,x - 2*y", "--steps",
+                                  "2", "--move", "B:translate(0.1,0,0)", "--chares", "5", "--kind",
+                                  "second-order", "--out", scratch.path(name)});
   using Rows = std::map<Point, std::vector<double>>;
   const auto add = [](const std::string& path, Rows& rows) {
     const TetMesh mesh = read_mesh(path);

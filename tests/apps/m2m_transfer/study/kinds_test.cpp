@@ -1,19 +1,20 @@
-// Studies of kinds and of steps.
-#include "apps/m2m_transfer/driver.hpp"
+// Studies of kinds, of steps and of PEs.
 #include "apps/m2m_transfer/input/formulas.hpp"
 #include "apps/m2m_transfer/study/checks.hpp"
 #include "m2m/kuhn.hpp"
-#include "runtime/machine/threads.hpp"
-#include "tests/support/catch.hpp"
-#include "tests/support/scratch.hpp"
+#include "tests/apps/m2m_transfer/program.hpp"
 
+#include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 using namespace tess;
 using namespace m2m_transfer;
 using tess::test::Scratch;
 using tess::test::slurp;
+using tests::exit_code;
+using tests::results_of;
+using tests::threads;
+using tests::Words;
 
 namespace {
 
@@ -63,17 +64,11 @@ TEST_CASE("the longest edge of a cube's tetrahedra is its diagonal", "[apps][stu
 
 TEST_CASE("a study of kinds has the order of each, and the linear bound holds", "[apps][study]") {
   const Scratch scratch;
-  Setup setup{make_threads_machine(2), {}};
-  DriverOptions options;
-  options.request.source = "kuhn:12,24@0.1";
-  options.request.fields = {"sin,linear"};
-  options.request.n_chares = 2;
-  options.study = "kind";
-  options.plot = scratch.path("study");
-  options.repeat = 1;
-  REQUIRE(drive(setup, options) == 0);
-  const auto report = nlohmann::json::parse(slurp(options.plot + "/study.json"));
-  CHECK(report["pairs"].size() == 2 * all_transfer_kinds.size());
+  const std::string plots = scratch.path("study");
+  REQUIRE(exit_code(threads(2), {"kuhn:12,24@0.1", "--fields", "sin,linear", "--chares", "2",
+                                 "--study", "kind", "--plot", plots, "--repeat", "1"}) == 0);
+  const auto report = nlohmann::json::parse(slurp(plots + "/study.json"));
+  CHECK(report["results"].size() == 2 * 2 * all_transfer_kinds.size());
   for (const auto& trend : report["trends"]) {
     INFO(trend.dump());
     if (trend["exact"].get<bool>() || trend["field"] != "sin") continue;
@@ -108,37 +103,31 @@ TEST_CASE("a study whose error exceeds the bound, or whose order is too low, fai
   TransferReport fine = coarse;
   fine.source_edge = 0.1;
   fine.fields[0].norms.l2 = 0.025;
-  Study study{{coarse, fine}, 1};
+  std::vector<TransferReport> study{coarse, fine};
   CHECK(checks(study).size() == 3);
-  CHECK(all_ok(checks(study)));
-  study.reports[1].fields[0].norms.l2 = 0.05;
-  CHECK_FALSE(all_ok(checks(study)));
-  CHECK_THAT(table(checks(study)), Catch::Contains("FAILED"));
+  CHECK(failures(checks(study)).empty());
+  study[1].fields[0].norms.l2 = 0.05;
+  CHECK_THAT(check_rows().table(checks(study)), Catch::Contains("FAILED"));
   CHECK_THAT(failures(checks(study)),
              Catch::Contains("FAILED: linear, a to a, sin: order of L2 at least: claimed "
                              "1.7500e+00, measured 1.0000e+00") &&
                  Catch::Contains("finer"));
-  study.reports[1].fields[0].norms.l2 = 0.025;
-  study.reports[0].fields[0].bound = 0.29;
-  CHECK_FALSE(all_ok(checks(study)));
+  study[1].fields[0].norms.l2 = 0.025;
+  study[0].fields[0].bound = 0.29;
   CHECK_THAT(failures(checks(study)), Catch::Contains("claimed 2.9000e-01, measured 3.0000e-01") &&
                                           !Catch::Contains("finer"));
-  study.reports[0].fields[0].bound = 0.31;
+  study[0].fields[0].bound = 0.31;
   CHECK(failures(checks(study)).empty());
 }
 
 TEST_CASE("a study of steps has the same bits with donors that are kept", "[apps][study]") {
   const Scratch scratch;
-  Setup setup{make_threads_machine(2), {}};
-  DriverOptions options;
-  options.request.source = "kuhn:5";
-  options.request.target = "kuhn:6@0.2";
-  options.study = "steps";
-  options.plot = scratch.path("study");
-  options.repeat = 1;
-  REQUIRE(drive(setup, options) == 0);
-  const auto rows = nlohmann::json::parse(slurp(options.plot + "/steps.json"))["rows"];
+  const nlohmann::json rows =
+      results_of(threads(2), {"kuhn:5", "kuhn:6@0.2", "--study", "steps", "--plot",
+                              scratch.path("study"), "--repeat", "1"});
   REQUIRE(rows.size() == 14);  // there and back
+  const std::string csv = slurp(scratch.path("study/steps.csv"));
+  CHECK(std::count(csv.begin(), csv.end(), '\n') == 1 + 14);
   for (const auto& row : rows) {
     CHECK(row["same_bits"].get<bool>());
     CHECK(row["seconds_per_step_kept"].get<double>() > 0);
@@ -147,50 +136,34 @@ TEST_CASE("a study of steps has the same bits with donors that are kept", "[apps
 }
 
 TEST_CASE("kind all runs every kind, each with the result that it has alone", "[apps][study]") {
-  const Scratch scratch;
-  DriverOptions options;
-  options.request.source = "kuhn:4@0.2";
-  options.request.target = "kuhn:5";
-  options.request.more = {"kuhn:3"};
-  options.request.pairs = "A:B,B:C";
-  options.request.fields = {"sin,x*y"};
-  options.request.steps = 2;
-  options.request.moves = {"B:translate(0.01,0,0)"};
-  options.json = scratch.path("report.json");
-  const auto pairs = [&](const std::string& kind) {
-    options.request.kind = kind;
-    options.kind_is_given = true;
-    Setup setup{make_threads_machine(2), {}};
-    REQUIRE(drive(setup, options) == 0);
-    return nlohmann::json::parse(slurp(options.json))["pairs"];
+  const auto rows_of = [&](const std::string& kind) {
+    return results_of(
+        threads(2), {"kuhn:4@0.2", "kuhn:5", "kuhn:3", "--pairs", "A:B,B:C", "--fields", "sin,x*y",
+                     "--steps", "2", "--move", "B:translate(0.01,0,0)", "--kind", kind});
   };
-  const nlohmann::json all = pairs("all");
-  REQUIRE(all.size() == 2 * all_transfer_kinds.size());
+  const nlohmann::json all = rows_of("all");
+  REQUIRE(all.size() == 4 * all_transfer_kinds.size());
   for (std::size_t k = 0; k < all_transfer_kinds.size(); ++k) {
     const std::string kind = name_of(all_transfer_kinds[k]);
-    const nlohmann::json alone = pairs(kind);
-    for (std::size_t p = 0; p < 2; ++p) {
-      CHECK(all[2 * k + p]["kind"] == kind);
-      CHECK(all[2 * k + p]["result_hash"] == alone[p]["result_hash"]);
-      CHECK(all[2 * k + p]["fields"] == alone[p]["fields"]);
+    const nlohmann::json alone = rows_of(kind);
+    for (std::size_t row = 0; row < 4; ++row) {
+      CHECK(all[4 * k + row]["kind"] == kind);
+      for (const char* name :
+           {"result_hash", "field", "l2", "linf", "found", "integral_source", "integral_target"})
+        CHECK(all[4 * k + row][name] == alone[row][name]);
     }
   }
 }
 
 TEST_CASE("kind all is refused where one result is wanted", "[apps][study]") {
-  DriverOptions options;
-  options.request.source = "kuhn:2";
-  options.request.target = "kuhn:3";
-  options.request.kind = "all";
-  options.kind_is_given = true;
-  const auto code = [&](const auto& change) {
-    DriverOptions one = options;
-    change(one);
-    Setup setup{make_threads_machine(1), {}};
-    return drive(setup, one);
+  const auto code = [&](const Words& more) {
+    Words words{"kuhn:2", "kuhn:3", "--kind", "all"};
+    words.insert(words.end(), more.begin(), more.end());
+    return exit_code(threads(1), words);
   };
-  CHECK(code([](DriverOptions& o) { o.study = "steps"; }) == 2);
-  CHECK(code([](DriverOptions& o) { o.request.clamp = true; }) == 2);
-  CHECK(code([](DriverOptions& o) { o.request.tolerance = 0.1; }) == 2);
-  CHECK(code([](DriverOptions& o) { o.weights = "/tmp/never.nc"; }) == 2);
+  CHECK(code({"--study", "steps"}) == 2);
+  CHECK(code({"--study", "pes"}) == 2);
+  CHECK(code({"--clamp"}) == 2);
+  CHECK(code({"--tolerance", "0.1"}) == 2);
+  CHECK(code({"--weights", "/tmp/never.nc"}) == 2);
 }

@@ -1,17 +1,13 @@
 #include "apps/m2m_transfer/study/study.hpp"
 
-#include "apps/m2m_transfer/driver.hpp"
 #include "m2m/kuhn.hpp"
 #include "m2m/write_exodus.hpp"
-#include "runtime/machine/threads.hpp"
+#include "tests/apps/m2m_transfer/program.hpp"
 #include "tests/apps/xml.hpp"
-#include "tests/support/catch.hpp"
-#include "tests/support/scratch.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 
 using namespace tess;
 using namespace tess::m2m;
@@ -19,10 +15,13 @@ using namespace m2m_transfer;
 using tess::test::message_of;
 using tess::test::Scratch;
 using tess::test::slurp;
+using tests::exit_code;
+using tests::results_of;
+using tests::threads;
 
 namespace {
 
-using Strings = std::vector<std::string>;
+using Strings = tests::Words;
 
 Strings pairs_of(const std::string& source, const std::string& target, const Strings& policies) {
   Request request;
@@ -65,24 +64,22 @@ TEST_CASE("a study pairs its sources and targets", "[apps][study]") {
 
 TEST_CASE("a study shows second order, and writes the same numbers to its files", "[apps][study]") {
   const Scratch scratch;
-  Setup setup{make_threads_machine(2), {}};
-  DriverOptions options;
-  options.request.source = "kuhn:6,12,24@0.2";
-  options.request.fields = {"sin", "linear", "x*y, or worse"};
-  options.request.n_chares = 2;
-  options.study = "h";
-  options.plot = scratch.path("deep/study");
-  options.repeat = 1;
+  const std::string plots = scratch.path("deep/study");
+  const auto code_with = [&](const std::string& field) {
+    return exit_code(
+        threads(2), {"kuhn:6,12,24@0.2", "--fields", "sin", "--fields", "linear", "--fields", field,
+                     "--chares", "2", "--study", "h", "--plot", plots, "--repeat", "1"});
+  };
   SECTION("an error in a field leaves only the empty folder") {
-    CHECK(drive(setup, options) == 2);
-    CHECK(std::filesystem::is_empty(options.plot));
+    CHECK(code_with("x*y, or worse") == 2);
+    CHECK(std::filesystem::is_empty(plots));
   }
   SECTION("correct fields") {
-    options.request.fields.back() = "min(x, 1)";
-    REQUIRE(drive(setup, options) == 0);
-    const auto report = nlohmann::json::parse(slurp(options.plot + "/study.json"));
-    REQUIRE(report["pairs"].size() == 3);
-    CHECK(report["pairs"][1]["found"]["l2"] == report["pairs"][1]["l2"]);  // all are found
+    REQUIRE(code_with("min(x, 1)") == 0);
+    const auto report = nlohmann::json::parse(slurp(plots + "/study.json"));
+    const auto& rows = report["results"];
+    REQUIRE(rows.size() == 3 * 3);
+    CHECK(rows[3]["l2_found"] == rows[3]["l2"]);  // all are found
     CHECK(report["definitions"]["found"].get<std::string>().find("inside") != std::string::npos);
     const auto& trends = report["trends"];
     REQUIRE(trends.size() == 3);
@@ -92,13 +89,13 @@ TEST_CASE("a study shows second order, and writes the same numbers to its files"
     CHECK(trends[1]["exact"].get<bool>());
     CHECK(trends[1]["l2_of_edge"].is_null());
     CHECK(trends[2]["exact"].get<bool>());
-    const std::string csv = slurp(options.plot + "/study.csv");
+    const std::string csv = slurp(plots + "/study.csv");
     CHECK(std::count(csv.begin(), csv.end(), '\n') == 1 + 3 * 3);
     CHECK(csv.find("\"min(x, 1)\"") != std::string::npos);
-    for (const auto& pair : report["pairs"])
-      CHECK(csv.find(pair["result_hash"].get<std::string>()) != std::string::npos);
+    for (const auto& row : rows)
+      CHECK(csv.find(row["result_hash"].get<std::string>()) != std::string::npos);
     // The picture shows the only field with an error, in two norms.
-    const std::string data = slurp(options.plot + "/error_time.csv");
+    const std::string data = slurp(plots + "/error_time.csv");
     CHECK(std::count(data.begin(), data.end(), '\n') == 1 + 2 * 3);
   }
 }
@@ -106,15 +103,10 @@ TEST_CASE("a study shows second order, and writes the same numbers to its files"
 TEST_CASE("the picture of a study has a curve per norm, and one of order 2",
           "[apps][study][.][gnuplot]") {
   const Scratch scratch;
-  Setup setup{make_threads_machine(2), {}};
-  DriverOptions options;
-  options.request.source = "kuhn:3,6";
-  options.request.fields = {"sin"};
-  options.study = "h";
-  options.plot = scratch.path("study");
-  options.repeat = 1;
-  REQUIRE(drive(setup, options) == 0);
-  const auto elements = test::read_xml(slurp(options.plot + "/error_edge.svg"));
+  const std::string plots = scratch.path("study");
+  REQUIRE(exit_code(threads(2), {"kuhn:3,6", "--fields", "sin", "--study", "h", "--plot", plots,
+                                 "--repeat", "1"}) == 0);
+  const auto elements = test::read_xml(slurp(plots + "/error_edge.svg"));
   CHECK(std::count_if(elements.begin(), elements.end(), [](const test::XmlElement& e) {
           return e.attributes.find("id=\"gnuplot_plot_") != std::string::npos;
         }) == 3);
@@ -125,25 +117,18 @@ TEST_CASE("norms over found vertices leave out values of the policy", "[apps][tr
   TetMesh target = kuhn_mesh({5});
   for (Point& p : target.points) p[0] *= 2;  // half outside
   write_exodus(scratch.path("wide.exo"), target, {});
-  DriverOptions options;
-  options.request.source = "kuhn:4";
-  options.request.target = scratch.path("wide.exo");
-  options.request.fields = {"linear"};
-  options.policies = {"value:1000"};
-  options.json = scratch.path("report.json");
-  options.picture = scratch.path("cut.svg");
-  Setup setup{make_threads_machine(2), {}};
-  REQUIRE(drive(setup, options) == 0);
-  const auto pair = nlohmann::json::parse(slurp(options.json))["pairs"][0];
-  CHECK(pair["outside"] == 3 * 36);
-  CHECK(pair["found"]["vertices"] == 3 * 36);
-  CHECK(pair["found"]["linf"].get<double>() < 1e-12);
-  CHECK(pair["fields"][0]["found"]["l2"].get<double>() < 1e-12);
-  CHECK(pair["linf"].get<double>() > 900);
-  CHECK(pair["fields"][0]["l2"].get<double>() > 100);
+  const auto row =
+      results_of(threads(2), {"kuhn:4", scratch.path("wide.exo"), "--fields", "linear", "--policy",
+                              "value:1000", "--picture", scratch.path("cut.svg")})[0];
+  CHECK(row["outside"] == 3 * 36);
+  CHECK(row["found"] == 3 * 36);
+  CHECK(row["linf_found"].get<double>() < 1e-12);
+  CHECK(row["l2_found"].get<double>() < 1e-12);
+  CHECK(row["linf"].get<double>() > 900);
+  CHECK(row["l2"].get<double>() > 100);
   // The picture shows the plane across the first of the two short sides. It uses both ends of the
   // colour scale.
-  const std::string svg = slurp(options.picture);
+  const std::string svg = slurp(scratch.path("cut.svg"));
   const auto elements = test::read_xml(svg);
   const auto count = [&](const std::string& name) {
     return std::count_if(elements.begin(), elements.end(),

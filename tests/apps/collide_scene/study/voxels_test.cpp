@@ -1,18 +1,17 @@
-// The study: the same pairs for every voxel size, and the error of boxes against exact triangles.
-#include "apps/collide_scene/study/study.hpp"
+// The study of voxels: the same pairs for every voxel size, and the error of boxes against exact triangles.
+#include "apps/collide_scene/study/voxels.hpp"
 
 #include "tests/support/catch.hpp"
-#include "tests/support/scratch.hpp"
 
 using namespace collide_scene;
 
 TEST_CASE("every voxel size of the study gives the same pairs", "[apps][collide_scene]") {
   kit::Progress progress(nullptr);
   const Scene scene = make_scene("planes:4096");
-  const std::vector<StudyRow> rows = study(scene, {}, progress);
+  const std::vector<VoxelRow> rows = study_voxels(scene, {}, progress);
   REQUIRE(rows.size() == 16);
   CHECK(agrees(rows));
-  const StudyRow &boxes = rows.front(), &triangles = rows.back();
+  const VoxelRow &boxes = rows.front(), &triangles = rows.back();
   CHECK(boxes.objects == "boxes");
   CHECK(triangles.objects == "triangles");
   CHECK(boxes.answer.n_pairs == boxes.answer.n_candidates);
@@ -21,7 +20,7 @@ TEST_CASE("every voxel size of the study gives the same pairs", "[apps][collide_
   CHECK(triangles.false_positive_rate == 0);
   CHECK(boxes.false_positive_rate == Approx(1 - static_cast<double>(triangles.answer.n_pairs) /
                                                     static_cast<double>(boxes.answer.n_pairs)));
-  for (const StudyRow& row : rows) CHECK((row.note.empty() && row.cpu_seconds > 0));
+  for (const VoxelRow& row : rows) CHECK((row.note.empty() && row.cpu_seconds > 0));
   CHECK(rows[0].voxel_size < rows[7].voxel_size);
 }
 
@@ -29,11 +28,11 @@ TEST_CASE("the study compares with the voxel size of the library, whatever the o
           "[apps][collide_scene]") {
   kit::Progress progress(nullptr);
   const Scene scene = make_scene("planes:4096");
-  const std::vector<StudyRow> expected = study(scene, {}, progress);
+  const std::vector<VoxelRow> expected = study_voxels(scene, {}, progress);
   Options options;
   for (const double voxel_size : {1e-9, 3.0}) {  // the first is refused
     options.rules.voxel_size = voxel_size;
-    const std::vector<StudyRow> rows = study(scene, options, progress);
+    const std::vector<VoxelRow> rows = study_voxels(scene, options, progress);
     CHECK(agrees(rows));
     REQUIRE(rows.size() == expected.size());
     for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -45,13 +44,13 @@ TEST_CASE("the study compares with the voxel size of the library, whatever the o
 
 TEST_CASE("a study in which one voxel size loses a pair does not agree", "[apps][collide_scene]") {
   kit::Progress progress(nullptr);
-  std::vector<StudyRow> rows = study(make_scene("boxes:500"), {}, progress);
+  std::vector<VoxelRow> rows = study_voxels(make_scene("boxes:500"), {}, progress);
   REQUIRE(rows.size() == 8);
   CHECK(agrees(rows));
   rows[3].agrees = false;
   CHECK_FALSE(agrees(rows));
-  CHECK(study_table(rows).find("OTHER PAIRS") != std::string::npos);
+  CHECK(voxel_report().table(rows).find("OTHER PAIRS") != std::string::npos);
   rows[3].note = "too small";  // a refusal is no wrong answer
   CHECK(agrees(rows));
-  CHECK(study_csv(rows).find("too small") != std::string::npos);
+  CHECK(voxel_report().csv(rows).find("too small") != std::string::npos);
 }
