@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Checks that tests mirror the tree: a source with test cases is tests/FOLDER/NAME_test.cpp, where FOLDER holds sources; a
-# source without cases (a program, or what cases share) has another name.
+# source without cases (a program, or what cases share) has another name. A public header FOLDER/NAME.hpp has such a source, or
+# stands in tests/headers.txt.
 # `cmake/test_names.sh [ROOT]` checks the tree at ROOT instead of this one.
 set -euo pipefail
 cd "${1:-$(dirname "$0")/..}"
@@ -19,5 +20,16 @@ while IFS= read -r source; do
     refuse "$source: holds no test case; its name should not end in _test.cpp"
   fi
 done < <(find tests -name "*.cpp" -not -path "tests/samples/*" | sort)
+shopt -s nullglob
+excepted=" $(sed '/^#/d' tests/headers.txt | tr '\n' ' ') "
+for header in {runtime,collide,collide/dn_field,m2m}/*.hpp; do
+  name=${header%.hpp}
+  if [[ -f tests/${name}_test.cpp ]]; then
+    [[ $excepted != *" $name "* ]] || refuse "tests/headers.txt: $header has a test file"
+  elif [[ $excepted != *" $name "* ]]; then
+    refuse "$header: no tests/${name}_test.cpp; name in tests/headers.txt where it is tested"
+  fi
+done
+for name in $excepted; do [[ -f $name.hpp ]] || refuse "tests/headers.txt: there is no $name.hpp"; done
 if ((failed == 0)); then echo "test_names: tests mirror the tree"; fi
 exit $failed

@@ -27,6 +27,7 @@ END
   echo 'Says "who" in a quotation.' >m2m/README.md
   echo 'TEST_CASE("a number") {}' >tests/runtime/core/number_test.cpp
   echo 'int shared();' >tests/runtime/core/shared.cpp
+  echo '# No header is excepted.' >tests/headers.txt
 }
 run_check() {
   case $check in
@@ -87,6 +88,8 @@ case $check in
   test_names)
     refuses tests/runtime/core/registry.cpp 'TEST_CASE("a name") {}' 'should end in _test.cpp'
     refuses tests/runtime/core/shared_test.cpp 'int shared();' 'holds no test case'
+    refuses runtime/scan.hpp '// A scan.' 'no tests/runtime/scan_test.cpp'
+    refuses tests/headers.txt 'runtime/scan' 'there is no runtime/scan.hpp'
     mkdir tests/elsewhere
     refuses tests/elsewhere/number_test.cpp 'TEST_CASE("a number") {}' 'there is no folder elsewhere'
     ;;

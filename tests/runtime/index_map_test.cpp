@@ -135,10 +135,6 @@ tess::Task create_on_demand(int& made_on, int& far_on, std::vector<int>& dots_on
 
 struct SavedFields {
   tess::ArrayProxy<Field> fields;
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(fields);
-  }
 };
 tess::Task save(std::string folder) {
   SavedFields state;

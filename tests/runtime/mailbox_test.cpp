@@ -169,3 +169,30 @@ TEST_CASE("messages of one key that are put back together keep their order", "[r
 }
 
 }  // namespace
+
+namespace {
+
+class Taker : public tess::Chare<Taker> {
+ public:
+  tess::Task read(int waiter) {
+    const Note note = co_await notes_.take(7);
+    taken.push_back(10 * waiter + note.number);
+  }
+  void put(int number) { notes_.put(Note{7, number}); }
+
+ private:
+  tess::Mailbox<&Note::key> notes_;
+};
+
+}  // namespace
+
+TEST_CASE("a message goes to the coroutine that has waited longest", "[runtime][mailbox]") {
+  taken.clear();
+  const auto main = [] {
+    const auto takers = tess::create<Taker>(tess::range(1));
+    for (int i = 1; i <= 4; ++i) takers[{0}].send<&Taker::read>(i);
+    for (int i = 1; i <= 4; ++i) takers[{0}].send<&Taker::put>(i);
+  };
+  REQUIRE(tests::run("pes=1,cost=100ns", main).exit_code == 0);
+  CHECK(taken == std::vector<int>{11, 22, 33, 44});
+}

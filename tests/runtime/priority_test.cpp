@@ -1,4 +1,6 @@
-// Priorities and attributes of entry methods, and single chares, as programs use them.
+// Priorities and attributes of entry methods, as programs use them.
+#include "runtime/priority.hpp"
+
 #include "runtime/machine/threads.hpp"
 #include "runtime/runtime.hpp"
 #include "runtime/testing.hpp"
@@ -196,84 +198,4 @@ TEST_CASE("an awaited call creates its element where the entry method's attribut
   tess::Setup setup{tess::make_threads_machine(2), {}};
   REQUIRE(tess::run(setup, [&]() -> tess::Task { return summon(places); }) == 0);
   CHECK(places == std::vector<int>{0, 1, 0});
-}
-
-namespace {
-
-/// Counts what it is sent, on whichever PE.
-class Single : public tess::Chare<Single> {
- public:
-  Single() = default;
-  explicit Single(int start) : count_(start) {}
-  void add(int n) { count_ += n; }
-  void tell(tess::Callback<std::pair<int, int>> target) {
-    target(std::pair(count_, tess::my_pe().value));
-  }
-
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(count_);
-  }
-
- private:
-  int count_ = 0;
-};
-
-class SingleAdder : public tess::Group<SingleAdder> {
- public:
-  void add(tess::ChareProxy<Single> to) { to.send<&Single::add>(1); }
-};
-
-tess::Task use_single(int& count, int& first_pe, int& last_pe, std::size_t& n_left) {
-  const tess::PeId last{tess::n_pes() - 1};
-  tess::ChareProxy<Single> anywhere;
-  co_await tess::epoch([&] { anywhere = tess::create_one<Single>(1); });
-  const auto single = tess::create_one_on<Single>(last, 100);
-  tess::Future<std::pair<int, int>> first, second;
-  single.send<&Single::tell>(first.callback());
-  const auto before = co_await first;
-  first_pe = before.second;
-  const auto senders = tess::create_group<SingleAdder>();
-  co_await tess::epoch([&] {
-    senders.broadcast<&SingleAdder::add>(single);
-    single.migrate_to(tess::PeId{0});
-    senders.broadcast<&SingleAdder::add>(single);
-  });
-  single.with(tess::expedited).send<&Single::tell>(second.callback());
-  const auto after = co_await second;
-  count = after.first;
-  last_pe = after.second;
-  co_await tess::epoch([&] {
-    anywhere.destroy();
-    single.destroy();
-    senders.destroy();
-  });
-  n_left = tess::n_collections();
-}
-
-void check_single(int n_pes, const auto& run_on_machine, bool moves_by_force) {
-  int count = 0, first_pe = -1, last_pe = -1;
-  std::size_t n_left = 9;
-  run_on_machine([&]() -> tess::Task { return use_single(count, first_pe, last_pe, n_left); });
-  REQUIRE(count == 100 + 2 * n_pes);
-  if (!moves_by_force) {
-    REQUIRE(first_pe == n_pes - 1);
-    REQUIRE(last_pe == 0);
-  }
-  REQUIRE(n_left == 0);
-}
-
-}  // namespace
-
-TEST_CASE("a single chare is made where it is asked for, moves, and ends", "[runtime][single]") {
-  for (const int n_pes : {1, 3}) {
-    tess::Setup setup{tess::make_threads_machine(n_pes), {}};
-    check_single(
-        n_pes, [&](const auto& main) { REQUIRE(tess::run(setup, main) == 0); }, false);
-  }
-  tess::test::for_seeds(0, 100, [](std::uint64_t seed) {
-    const tess::test::Machine machine{.pes = 1 + static_cast<int>(seed % 5), .seed = seed};
-    check_single(
-        machine.pes, [&](const auto& main) { machine.run(main).require_success(); }, true);
-  });
 }

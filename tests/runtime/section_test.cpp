@@ -1,22 +1,12 @@
 // Sections as a user writes them; reductions with a finishing step and gather by index, over arrays
 // and sections.
-#include "runtime/machine/simulated.hpp"
+#include "runtime/section.hpp"
+
 #include "runtime/runtime.hpp"
 #include "runtime/when.hpp"
-#include "tests/support/catch.hpp"
+#include "tests/support/over_seeds.hpp"
 
 namespace {
-
-int run_on_four(std::uint64_t seed, std::function<tess::Task()> main) {
-  tess::SimulatedOptions options;
-  options.n_pes = 4;
-  options.seed = seed;
-  options.cost = std::chrono::nanoseconds(100);
-  options.migration_chance = 0.2;
-  tess::Setup setup;
-  setup.machine = tess::make_simulated_machine(options);
-  return tess::run(setup, std::move(main));
-}
 
 struct Mean {
   struct Part {
@@ -43,10 +33,6 @@ class Cell : public tess::Chare<Cell> {
     tess::SectionProxy<Cell> section;
     tess::Callback<double> mean;
     tess::Callback<Squares> squares;
-    template <class Ar>
-    void serialize(Ar& ar) {
-      ar(section, mean, squares);
-    }
   };
   void ask(Request request) {
     contribute(request.section, tess::in_order(Mean{}), Mean::Part{1.0 * index().x, 1},
@@ -168,10 +154,8 @@ tess::Task end_before_all_have_joined(bool at_once) {
 
 TEST_CASE("a section that ends waits for no index without an element", "[runtime][section]") {
   for (const bool at_once : {true, false}) {
-    for (std::uint64_t seed = 1; seed <= 50; ++seed) {
-      INFO("seed " << seed << (at_once ? ", at once" : ", later"));
-      CHECK(run_on_four(seed, [&] { return end_before_all_have_joined(at_once); }) == 0);
-    }
+    CAPTURE(at_once);
+    tests::over_seeds(50, "pes=4,cost=100ns", [&] { return end_before_all_have_joined(at_once); });
   }
 }
 
@@ -179,34 +163,22 @@ TEST_CASE("a member that another member's call moves away before its turn receiv
           "[runtime][section]") {
   for (int n_pes = 1; n_pes <= 4; ++n_pes) {
     INFO(n_pes << " PEs");
-    tess::SimulatedOptions options;
-    options.n_pes = n_pes;
-    options.cost = std::chrono::nanoseconds(100);
-    tess::Setup setup;
-    setup.machine = tess::make_simulated_machine(options);
     std::vector<int> heard;
-    REQUIRE(tess::run(setup, [&] { return push(heard); }) == 0);
+    const std::string keys = tess::text("pes=", n_pes, ",cost=100ns");
+    REQUIRE(tests::run(keys, [&] { return push(heard); }).exit_code == 0);
     CHECK(heard == std::vector<int>(8, 12));
   }
 }
 
 TEST_CASE("once members have moved, multicasts cost as few messages as before",
           "[runtime][section]") {
-  tess::SimulatedOptions options;
-  options.n_pes = 8;
-  options.cost = std::chrono::nanoseconds(100);
-  tess::Setup setup;
-  setup.machine = tess::make_simulated_machine(options);
   Costs costs;
-  REQUIRE(tess::run(setup, [&] { return count_messages(costs); }) == 0);
+  REQUIRE(tests::run("pes=8,cost=100ns", [&] { return count_messages(costs); }).exit_code == 0);
   INFO(costs[0] << " messages, after the members have moved " << costs[1]);
   CHECK(costs[1] < costs[0] + 64);  // one per member and multicast would be 640 more
 }
 
 TEST_CASE("reductions are finished at the root and gathered by index, over arrays and sections",
           "[runtime][section]") {
-  for (std::uint64_t seed = 1; seed <= 50; ++seed) {
-    INFO("seed " << seed);
-    CHECK(run_on_four(seed, [] { return reduce(); }) == 0);
-  }
+  tests::over_seeds(50, "pes=4,cost=100ns", &reduce);
 }

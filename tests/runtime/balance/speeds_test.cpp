@@ -25,10 +25,6 @@ class Traveller : public Chare<Traveller> {
 
 struct State {
   ArrayProxy<Traveller> travellers;
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(travellers);
-  }
 };
 
 /// Nothing costs time but charge(), and nothing migrates by itself.

@@ -39,10 +39,6 @@ class Brick : public tess::Chare<Brick> {
 
 struct Bricks {
   tess::ArrayProxy<Brick> bricks;
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(bricks);
-  }
 };
 
 tess::Task phase(tess::ArrayProxy<Brick> bricks) {

@@ -31,10 +31,6 @@ class Keeper : public tess::Chare<Keeper> {
 struct Kept {
   tess::ArrayProxy<Keeper> keepers;
   tess::Callback<int> target;
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(keepers, target);
-  }
 };
 
 /// Elements keep a callback to a future of the main coroutine, and so does its state.

@@ -62,10 +62,6 @@ class Table : public tess::Group<Table> {
 struct State {
   tess::ArrayProxy<Cell> cells;
   tess::GroupProxy<Table> tables;
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(cells, tables);
-  }
 };
 
 using Prepare = void (*)(const State&);

@@ -55,10 +55,6 @@ class Maker : public tess::Chare<Maker> {
 struct State {
   tess::ArrayProxy<Maker> makers;
   tess::Timer timer;
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(makers, timer);
-  }
 };
 constexpr int n = 8;
 
@@ -151,10 +147,6 @@ class Desk : public tess::Chare<Desk> {
 struct Desks {
   static constexpr std::size_t n_anywhere = 20;
   std::vector<tess::ChareProxy<Desk>> all;
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(all);
-  }
 
   static Desks make() {
     Desks desks;

@@ -46,10 +46,6 @@ struct State {
   tess::SectionProxy<Singer> choir;
   Voices members;
   int n_rounds = 0;
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(singers, choir, members, n_rounds);
-  }
 };
 
 /// Two elements conduct at the same time; one of them is no member.

@@ -50,10 +50,6 @@ class Atom : public tess::Chare<Atom, tess::Index2> {
   struct Row {
     tess::SectionProxy<Atom> section;
     tess::Callback<double> sum;
-    template <class Ar>
-    void serialize(Ar& ar) {
-      ar(section, sum);
-    }
   };
   void sum_row(Row row) { contribute(row.section, tess::in_order(tess::sum), value_, row.sum); }
 

@@ -1,12 +1,14 @@
 // For tests of one part of a collection without a run: a bag of messages from which a random one is
-// delivered next, and the counters of epochs.
+// delivered next, the counters of epochs, and a result that knows its contributors.
 #pragma once
 
+#include "runtime/collections/reductions/partial.hpp"
 #include "runtime/completion/completion.hpp"
 #include "runtime/core/hash.hpp"
 
 #include <functional>
 #include <memory>
+#include <typeinfo>
 #include <utility>
 #include <vector>
 
@@ -78,6 +80,26 @@ class Ledgers {
 
  private:
   std::vector<std::unique_ptr<Ledger>> of_pes_;
+};
+
+/// The contributors to a result, in the order in which they were merged.
+class Contributors final : public detail::Partial {
+ public:
+  explicit Contributors(int id) : ids{id} {}
+  static const detail::PartialKind& its_kind() {
+    static const detail::PartialKind kind({"tess::test::Contributors", &typeid(Contributors)},
+                                          nullptr);
+    return kind;
+  }
+  [[nodiscard]] const detail::PartialKind& kind() const override { return its_kind(); }
+  void merge(detail::Partial&& other) override {
+    const auto& more = static_cast<Contributors&>(other).ids;
+    ids.insert(ids.end(), more.begin(), more.end());
+  }
+  void pack(Writer& /*ar*/) const override {}
+  void complete(detail::Pe& /*pe*/) override {}
+
+  std::vector<int> ids;
 };
 
 }  // namespace tess::test

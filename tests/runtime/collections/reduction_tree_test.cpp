@@ -15,33 +15,14 @@
 #include "tests/support/catch.hpp"
 
 #include <algorithm>
-#include <typeinfo>
 
 namespace {
 
 using namespace tess;
 using namespace tess::detail;
 using test::Bag;
+using test::Contributors;
 using test::Ledgers;
-
-/// The contributors to a result, in the order in which they were merged.
-class Contributors final : public Partial {
- public:
-  explicit Contributors(int id) : ids{id} {}
-  static const PartialKind& its_kind() {
-    static const PartialKind kind({"tess::test::Contributors", &typeid(Contributors)}, nullptr);
-    return kind;
-  }
-  [[nodiscard]] const PartialKind& kind() const override { return its_kind(); }
-  void merge(Partial&& other) override {
-    const auto& more = static_cast<Contributors&>(other).ids;
-    ids.insert(ids.end(), more.begin(), more.end());
-  }
-  void pack(Writer& /*ar*/) const override {}
-  void complete(Pe& /*pe*/) override {}
-
-  std::vector<int> ids;
-};
 
 /// An element's part in rounds, as Collection keeps it.
 struct Voter {

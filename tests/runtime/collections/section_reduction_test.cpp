@@ -12,33 +12,14 @@
 #include <algorithm>
 #include <optional>
 #include <set>
-#include <typeinfo>
 
 namespace {
 
 using namespace tess;
 using namespace tess::detail;
 using test::Bag;
+using Givers = test::Contributors;
 using test::Ledgers;
-
-/// The members whose contributions were merged.
-class Givers final : public Partial {
- public:
-  explicit Givers(int id) : ids{id} {}
-  static const PartialKind& its_kind() {
-    static const PartialKind kind({"tess::test::Givers", &typeid(Givers)}, nullptr);
-    return kind;
-  }
-  [[nodiscard]] const PartialKind& kind() const override { return its_kind(); }
-  void merge(Partial&& other) override {
-    const auto& more = static_cast<Givers&>(other).ids;
-    ids.insert(ids.end(), more.begin(), more.end());
-  }
-  void pack(Writer& /*ar*/) const override {}
-  void complete(Pe& /*pe*/) override {}
-
-  std::vector<int> ids;
-};
 
 struct Participant {
   int id = 0;

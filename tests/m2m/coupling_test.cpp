@@ -1,5 +1,6 @@
 // A piece is a chare: it uses what a chare has, under the same names.
 #include "m2m/coupling.hpp"
+
 #include "m2m/kuhn.hpp"
 #include "m2m/mesh_parts.hpp"
 #include "runtime/testing.hpp"

@@ -1,5 +1,6 @@
-#include "apps/kit/worst.hpp"
 #include "collide/dn_field/build_field.hpp"
+
+#include "apps/kit/worst.hpp"
 #include "collide/dn_field/bvh.hpp"
 #include "collide/dn_field/normal_code.hpp"
 #include "collide/dn_field/shapes.hpp"

@@ -125,10 +125,6 @@ class CountsSteps : public tess::Chare<CountsSteps> {
 struct Totals {
   tess::ArrayProxy<CountsSteps> cells;
   int total = 0;
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(cells, total);
-  }
 
   tess::Task step() {
     const int found = co_await cells.reduce<&CountsSteps::step>();

@@ -1,6 +1,7 @@
 // A program may open namespace tess and still use the names of the runtime's internals.
-#include "runtime/balance.hpp"
 #include "runtime/runtime.hpp"
+
+#include "runtime/balance.hpp"
 #include "runtime/shared_array.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/run.hpp"

@@ -1,9 +1,10 @@
-// Epochs that are awaited with others, asks with a priority, and asks of single chares.
-#include "runtime/machine/threads.hpp"
+// Epochs that are awaited with others.
+#include "runtime/when.hpp"
+
 #include "runtime/runtime.hpp"
 #include "runtime/testing.hpp"
-#include "runtime/when.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/run.hpp"
 
 #include <string>
 #include <utility>
@@ -131,44 +132,6 @@ void check_joined(const Joined& found) {
   tess::test::expect(found.own == 11 || found.own == 22, "own ", found.own);
 }
 
-/// Collects the order in which its calls run.
-class Desk : public tess::Chare<Desk> {
- public:
-  void add(int number) { order_.push_back(number); }
-  int note(int number) {
-    order_.push_back(number);
-    return number;
-  }
-  [[nodiscard]] std::vector<int> order() const { return order_; }
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(order_);
-  }
-
- private:
-  std::vector<int> order_;
-};
-
-/// All calls are ready before the first runs: they are sent within one entry method.
-tess::Task ask_with_priorities(std::vector<int>& order, int& late) {
-  const auto desk = tess::create_one_on<Desk>(tess::PeId{0});
-  co_await tess::epoch([] {});
-  (void)co_await desk.ask<&Desk::order>();
-  auto third = desk.with(tess::Priority{3}).ask<&Desk::note>(3);
-  auto plain = desk.ask<&Desk::note>(0);
-  auto first = desk.with(tess::expedited).ask<&Desk::note>(-9);
-  auto second = desk.with(tess::Priority{-2}).ask<&Desk::note>(-2);
-  (void)co_await tess::when_all(std::move(third), std::move(plain), std::move(first),
-                                std::move(second));
-  order = co_await desk.ask<&Desk::order>();
-  const tess::Time began = tess::now();
-  desk.send_after<&Desk::add>(2ms, 77);
-  desk.send_after<&Desk::add>(1ms, 88).cancel();
-  co_await tess::sleep(3ms);
-  const std::vector<int> last = co_await desk.ask<&Desk::order>();
-  late = tess::now() - began >= 2ms ? last.back() : 0;
-}
-
 }  // namespace
 
 TEST_CASE("epochs are awaited together, and the first of several", "[runtime][when]") {
@@ -182,18 +145,8 @@ TEST_CASE("epochs are awaited together, and the first of several", "[runtime][wh
 
 TEST_CASE("epochs are awaited together on the machine of threads", "[runtime][when][threads]") {
   Joined found;
-  tess::Setup setup{tess::make_threads_machine(2), {}};
-  REQUIRE(tess::run(setup, [&]() -> tess::Task { return join(found); }) == 0);
+  REQUIRE(tests::run_threads(2, [&]() -> tess::Task { return join(found); }).exit_code == 0);
   tess::test::expect(
       found.of_both == 20 && found.own != 0 && found.error == "no, nor this" && found.at_once == 0,
       "threads");
-}
-
-TEST_CASE("asks of a single chare run in the order of their priorities", "[runtime][ask]") {
-  std::vector<int> order;
-  int late = 0;
-  const tess::test::Machine machine{.pes = 2, .reordering = 0, .migration = 0.0};
-  machine.run([&]() -> tess::Task { return ask_with_priorities(order, late); }).require_success();
-  CHECK(order == std::vector<int>{-9, -2, 0, 3});
-  CHECK(late == 77);
 }

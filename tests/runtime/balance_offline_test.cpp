@@ -1,5 +1,6 @@
 // A user's strategy without a run, as runtime/README.md shows it. tests/samples/check.py compares.
 #include "runtime/balance_offline.hpp"
+
 #include "tests/support/catch.hpp"
 #include "tests/support/scratch.hpp"
 

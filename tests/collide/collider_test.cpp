@@ -3,6 +3,7 @@
 // two owners (once, if they are the same). There are several collisions in a row, and the boxes
 // move between them.
 #include "collide/collider.hpp"
+
 #include "runtime/runtime.hpp"
 #include "runtime/testing.hpp"
 #include "tests/support/capsule_of_box.hpp"

@@ -1,5 +1,6 @@
 // Rounds of whole runs on the simulated machine: several balanced arrays at once, and seeds.
 #include "runtime/balance.hpp"
+
 #include "runtime/balance/strategy.hpp"
 #include "runtime/runtime.hpp"
 #include "runtime/testing.hpp"
