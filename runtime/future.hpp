@@ -185,7 +185,7 @@ class Future : public detail::FutureBase {
     const Where to = where(callback.where());
     detail::send_system<&Future::arrives>(sends_to(to), to.pe, Result{to.id, std::move(value)});
   }
-  static void arrives(Pe& pe, Result&& result) {
+  static void arrives(Pe& pe, Result&& result, detail::Counted /*counted*/) {
     Slot& slot = find(pe, result.id, name_of_type<T>);
     static_cast<TypedSlot&>(slot).value = std::move(result.value);
     given(pe, slot);

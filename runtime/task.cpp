@@ -77,16 +77,14 @@ void TaskAccount::belongs_to(const Element& element) {
 
 void TaskAccount::hold() {
   if (held) return;
-  held = true;
-  pe->completion().sent(context.epoch);
+  held = Counted::sent(pe->completion(), context.epoch);
   if (context.element != nullptr) pin(*context.element);
 }
 
 void TaskAccount::release() {
   if (!held) return;
-  held = false;
+  held = {};
   pe->suspended().erase(entry);
-  pe->completion().processed(context.epoch);
   if (context.element != nullptr) unpin(*context.element);
 }
 

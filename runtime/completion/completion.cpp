@@ -100,7 +100,7 @@ void Completion::check_later(EpochId epoch) {
 }
 
 bool Completion::report_epochs() {
-  if (changed_.empty()) return false;
+  if (changed_.empty() || !reports_) return false;
   std::vector<EpochId> changed;
   changed.swap(changed_);
   bool any = false;

@@ -1,6 +1,8 @@
-// An envelope with one payload: its construction, packing and release.
+// An envelope with one payload: its construction, packing and release; and the function that handles
+// such a message where it arrives.
 #pragma once
 
+#include "runtime/completion/counted.hpp"
 #include "runtime/messages/envelope.hpp"
 #include "runtime/scheduler/block.hpp"
 
@@ -29,5 +31,39 @@ struct Message final : Envelope {
     return message;
   }
 };
+
+/// The type of a handler: what it gets is a part of its PE, the payload, and, where its messages
+/// count in the epoch in which they are sent, the Counted of the message. Such a message is counted
+/// as sent by whatever sends it, and as processed when the handler has returned, unless the handler
+/// keeps the Counted.
+template <class F>
+struct HandlerType;
+template <class R, class P>
+struct HandlerType<void (*)(R&, P&&)> {
+  using Receiver = R;
+  using Payload = P;
+  static constexpr bool counts = false;
+  /// The message of a payload that has arrived.
+  static Counted counted(Pe& /*pe*/, const Envelope& /*message*/) { return {}; }
+};
+template <class R, class P>
+struct HandlerType<void (*)(R&, P&&, Counted)> {
+  using Receiver = R;
+  using Payload = P;
+  static constexpr bool counts = true;
+  static Counted counted(Pe& pe, const Envelope& message) {
+    return {pe.completion(), message.epoch};
+  }
+};
+
+template <auto Handler>
+void call_handler(typename HandlerType<decltype(Handler)>::Receiver& receiver,
+                  typename HandlerType<decltype(Handler)>::Payload&& payload, Counted counted) {
+  if constexpr (HandlerType<decltype(Handler)>::counts) {
+    Handler(receiver, std::move(payload), std::move(counted));
+  } else {
+    Handler(receiver, std::move(payload));
+  }
+}
 
 }  // namespace tess::detail

@@ -124,8 +124,9 @@ class ArrayOf : public Collection {
     return record->state() == IndexState::here ? pe_.id() : record->pe();
   }
 
-  /// A user's message is sent from here.
+  /// A new message is sent from here. Its epoch waits for it.
   void post(CallMessage* message) {
+    pe_.count(*message);
     Record* record = table_.find(message->index);
     if (record != nullptr && record->state() == IndexState::here) [[likely]] {
       message->receiver = record->element();
@@ -380,11 +381,11 @@ class ArrayOf : public Collection {
 template <class Index>
 inline void ArrayOf<Index>::execute(Indexed& element, CallMessage* message) {
   const auto& action = static_cast<const ElementAction<Index>&>(*message->action);
-  const EpochId epoch = message->epoch;
+  const Counted counted(pe_.completion(), message->epoch);
   if (action.invoke == nullptr) [[unlikely]] {
     refuse_insertion(message);
   } else {
-    const ElementScope scope(pe_, element, message->action, epoch, message->led_by);
+    const ElementScope scope(pe_, element, message->action, counted.epoch(), message->led_by);
     try {
       action.invoke(element, *message);
     } catch (...) {
@@ -394,7 +395,6 @@ inline void ArrayOf<Index>::execute(Indexed& element, CallMessage* message) {
     }
     discard(message);
   }
-  pe_.completion().processed(epoch);
 }
 
 // The usual types of indices are compiled once, in array_of.cpp.
