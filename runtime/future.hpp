@@ -70,7 +70,7 @@ class FutureBase {
   };
   [[nodiscard]] static Where where(std::span<const std::byte> name);
   [[nodiscard]] static std::string describe(std::span<const std::byte> name);
-  /// The PE that sends a result there; the message to it counts.
+  /// The PE that sends a result there.
   [[nodiscard]] static Pe& sends_to(const Where& to);
   /// The slot of a result that arrives; `waits_for` is for errors.
   [[nodiscard]] static Slot& find(Pe& pe, std::uint64_t id, std::string_view value);
