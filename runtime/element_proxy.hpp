@@ -276,12 +276,12 @@ class ElementProxy {
     return true;
   }
   void post_message(Pe& pe, detail::ElementMessage<Index>* message) const {
+    detail::Counted::departs(pe.completion(), message->epoch);
     if (detail::Collection* collection = detail::find_collection(pe, collection_);
         collection != nullptr) [[likely]] {
-      static_cast<detail::Array<C>*>(collection)->post(message);
+      static_cast<detail::Array<C>*>(collection)->post_counted(message);
     } else {
       check_not_empty();
-      pe.count(*message);
       pe.send_here(message);  // it waits until the array is known here
     }
   }

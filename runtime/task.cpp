@@ -77,14 +77,16 @@ void TaskAccount::belongs_to(const Element& element) {
 
 void TaskAccount::hold() {
   if (held) return;
-  held = Counted::sent(pe->completion(), context.epoch);
+  held = true;
+  Counted::departs(pe->completion(), context.epoch);
   if (context.element != nullptr) pin(*context.element);
 }
 
 void TaskAccount::release() {
   if (!held) return;
-  held = {};
+  held = false;
   pe->suspended().erase(entry);
+  (void)Counted(pe->completion(), context.epoch);
   if (context.element != nullptr) unpin(*context.element);
 }
 

@@ -24,7 +24,7 @@ namespace detail {
 struct TaskAccount {
   Pe* pe = nullptr;
   Context context;
-  Counted held;  // the coroutine waits, and holds the element and the epoch
+  bool held = false;  // the coroutine waits, and holds the element and the epoch
   Suspended entry;
 
   void belongs_to(const Element& element);

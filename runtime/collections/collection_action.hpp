@@ -33,15 +33,15 @@ struct CollectionAction {
       return;
     }
     Payload payload = std::move(message->payload.payload);
-    Counted counted = Of::counted(pe, *envelope);
+    const EpochId epoch = envelope->epoch;
     Held::destroy(envelope);
-    call_handler<Handler>(static_cast<typename Of::Receiver&>(*collection), std::move(payload),
-                          std::move(counted));
+    Of::template call<Handler>(pe, epoch, static_cast<typename Of::Receiver&>(*collection),
+                               std::move(payload));
   }
   /// The collection has ended. A payload may have more to do then; it returns the number of user
   /// messages that are lost.
   static std::uint64_t drop(Pe& pe, Envelope& envelope) {
-    const Counted counted = Of::counted(pe, envelope);
+    const Counted counted(pe.completion(), Of::counts ? envelope.epoch : EpochId{});
     const Payload& payload = static_cast<Held&>(envelope).payload.payload;
     if constexpr (requires { payload.drop(pe); }) {
       return payload.drop(pe);

@@ -175,6 +175,7 @@ class Completion {
   void processed(EpochId epoch) {
     if (epoch.value != 0) ++own(epoch).processed;
   }
+  void processed_by_call(EpochId epoch);  // not inline
 
   struct Relay;
   struct Epochs;

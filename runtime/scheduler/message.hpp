@@ -43,27 +43,20 @@ struct HandlerType<void (*)(R&, P&&)> {
   using Receiver = R;
   using Payload = P;
   static constexpr bool counts = false;
-  /// The message of a payload that has arrived.
-  static Counted counted(Pe& /*pe*/, const Envelope& /*message*/) { return {}; }
+  template <auto Handler>
+  static void call(Pe& /*pe*/, EpochId /*epoch*/, R& receiver, P&& payload) {
+    Handler(receiver, std::move(payload));
+  }
 };
 template <class R, class P>
 struct HandlerType<void (*)(R&, P&&, Counted)> {
   using Receiver = R;
   using Payload = P;
   static constexpr bool counts = true;
-  static Counted counted(Pe& pe, const Envelope& message) {
-    return {pe.completion(), message.epoch};
+  template <auto Handler>
+  static void call(Pe& pe, EpochId epoch, R& receiver, P&& payload) {
+    Handler(receiver, std::move(payload), Counted(pe.completion(), epoch));
   }
 };
-
-template <auto Handler>
-void call_handler(typename HandlerType<decltype(Handler)>::Receiver& receiver,
-                  typename HandlerType<decltype(Handler)>::Payload&& payload, Counted counted) {
-  if constexpr (HandlerType<decltype(Handler)>::counts) {
-    Handler(receiver, std::move(payload), std::move(counted));
-  } else {
-    Handler(receiver, std::move(payload));
-  }
-}
 
 }  // namespace tess::detail

@@ -100,6 +100,10 @@ void Pe::keep_exception(std::exception_ptr error) {
   if (!kept_exception_) kept_exception_ = std::move(error);
 }
 
+void Pe::count(const Envelope& message) {
+  Counted::departs(completion_, message.epoch);
+}
+
 void Pe::set_forced_migrations(double chance, ElementMover* mover) {
   migration_chance_ = chance;
   mover_ = mover;

@@ -17,9 +17,9 @@ struct PeAction {
   static void run(Pe& pe, Envelope* envelope) {
     auto* message = static_cast<Held*>(envelope);
     Payload payload = std::move(message->payload);
-    Counted counted = Of::counted(pe, *envelope);
+    const EpochId epoch = envelope->epoch;
     Held::destroy(envelope);
-    call_handler<Handler>(pe, std::move(payload), std::move(counted));
+    Of::template call<Handler>(pe, epoch, pe, std::move(payload));
   }
   static inline const Action action{naming::name_of<Handler>(),
                                     &run,

@@ -126,7 +126,11 @@ class ArrayOf : public Collection {
 
   /// A new message is sent from here. Its epoch waits for it.
   void post(CallMessage* message) {
-    pe_.count(*message);
+    Counted::departs(pe_.completion(), message->epoch);
+    post_counted(message);
+  }
+  /// The same for a message that is counted already.
+  void post_counted(CallMessage* message) {
     Record* record = table_.find(message->index);
     if (record != nullptr && record->state() == IndexState::here) [[likely]] {
       message->receiver = record->element();
@@ -381,7 +385,7 @@ class ArrayOf : public Collection {
 template <class Index>
 inline void ArrayOf<Index>::execute(Indexed& element, CallMessage* message) {
   const auto& action = static_cast<const ElementAction<Index>&>(*message->action);
-  const Counted counted(pe_.completion(), message->epoch);
+  Counted counted(pe_.completion(), message->epoch);
   if (action.invoke == nullptr) [[unlikely]] {
     refuse_insertion(message);
   } else {
@@ -395,6 +399,7 @@ inline void ArrayOf<Index>::execute(Indexed& element, CallMessage* message) {
     }
     discard(message);
   }
+  counted.done();
 }
 
 // The usual types of indices are compiled once, in array_of.cpp.
