@@ -22,9 +22,10 @@ Collider make_collider(const ColliderOptions& options) {
     fail(ErrorCode::bad_argument, "make_collider() with a slack of ", options.slack,
          ": give a positive length, or 0 to search in each collision");
   const auto voxels = create<Voxel>(sparse);
-  Collider collider{voxels, create_group<Manager>(voxels), options};
+  Collider collider{voxels, create<Manager>(each_pe, voxels), options};
   if (options.slack > 0)
-    collider.neighbours = create_group<Neighbours>(collider.managers, options.rules, options.slack);
+    collider.neighbours =
+        create<Neighbours>(each_pe, collider.managers, options.rules, options.slack);
   return collider;
 }
 

@@ -72,9 +72,5 @@ template <auto F, class C>
 [[nodiscard]] Callback<Hits> report_to(const ArrayProxy<C>& owners) {
   return Callback<Hits>(detail::owner_kind<C, F>, to_bytes(owners.id()));
 }
-template <auto F, class C>
-[[nodiscard]] Callback<Hits> report_to(const GroupProxy<C>& owners) {
-  return report_to<F>(ArrayProxy<C>(owners.id()));
-}
 
 }  // namespace tess::collide

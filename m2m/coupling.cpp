@@ -130,8 +130,8 @@ struct AnyCoupling::State {
     setup.target_values = options.target_values;
     setup.collider = collide::make_collider(
         {.voxel_size = options.voxel_size, .rules = {.within_model = collide::WithinModel::skip}});
-    setup.ledger = create_group<Ledger>();
-    if (has_directory()) setup.directory = create_group<PointDirectory>();
+    setup.ledger = create<Ledger>(each_pe);
+    if (has_directory()) setup.directory = create<PointDirectory>(each_pe);
     // Each coupling has its own collider.
     setup.id = CouplingId{setup.collider.voxels.id().value};
     turns = std::make_shared<Turns>();

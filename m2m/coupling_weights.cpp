@@ -65,7 +65,7 @@ TaskOf<WeightMatrix> collect_weights(const AnyCoupling& coupling, std::int64_t n
              "weights are of values at points, and the coupling's source values are in ",
              rows_of(setup.source_values));
   GroupProxy<RowBook> book;
-  co_await epoch([&] { book = create_group<RowBook>(); });
+  co_await epoch([&] { book = create<RowBook>(each_pe); });
   co_await epoch([&] { setup.source.broadcast<&AnyPiece::m2m_give_rows>(setup.id, book); });
   const GlobalRows rows = co_await book.reduce<&RowBook::close_page>();
   co_await epoch([&] { book.destroy(); });

@@ -88,7 +88,7 @@ TaskOf<std::uint64_t> hash_values(DistributedMesh mesh, GlobalId n_vertices,
   for (const FieldColumns& field : fields)
     TESS_CHECK(field.first + field.n <= mesh.n_components, "a field has components up to ",
                field.first + field.n, ", the mesh has ", mesh.n_components);
-  const auto keepers = create_group<ValueKeeper>(n_vertices, std::uint64_t{mesh.n_components});
+  const auto keepers = create<ValueKeeper>(each_pe, n_vertices, std::uint64_t{mesh.n_components});
   co_await epoch([&] { mesh.workers.broadcast<&Worker::send_values>(keepers, n_vertices); });
   std::uint64_t so_far = result_hash({});
   for (const FieldColumns& field : fields)

@@ -112,7 +112,7 @@ Task send_ranges(GroupProxy<Placer> placers, const TetMesh* whole) {
 /// `whole`: the mesh if its ranges are sent, otherwise null.
 TaskOf<MeshSurvey> survey_ranges(PlacerSetup setup, const TetMesh* whole) {
   MeshSurvey out;
-  const GroupProxy<Placer> placers = create_group<Placer>(setup);
+  const GroupProxy<Placer> placers = create<Placer>(each_pe, setup);
   std::exception_ptr error;
   try {
     co_await send_ranges(placers, whole);
@@ -138,7 +138,7 @@ TaskOf<MeshSurvey> survey_ranges(PlacerSetup setup, const TetMesh* whole) {
 TaskOf<PlacedMesh> place_ranges(PlacerSetup setup, const TetMesh* whole) {
   PlacedMesh placed;
   setup.workers = create<Worker>(range(setup.n_parts));
-  const GroupProxy<Placer> placers = create_group<Placer>(setup);
+  const GroupProxy<Placer> placers = create<Placer>(each_pe, setup);
   std::exception_ptr error;
   try {
     co_await send_ranges(placers, whole);

@@ -82,7 +82,7 @@ consteval void check_class() {
   if constexpr (IsChare<C>)
     static_assert(std::equality_comparable<typename C::Index>,
                   "indices are compared: give the type of the index a defaulted operator==");
-  static_assert(!OnePerPe<C>, "a group is made by create_group()");
+  static_assert(!OnePerPe<C>, "a group has one member per PE: create<G>(tess::each_pe, …)");
 }
 
 /// Checks the arguments of create().

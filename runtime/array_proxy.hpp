@@ -3,9 +3,8 @@
 // runtime/array.hpp.
 #pragma once
 
-#include "runtime/core/handle.hpp"
 #include "runtime/element_proxy.hpp"
-#include "runtime/future.hpp"
+#include "runtime/whole_handle.hpp"
 
 #include <concepts>
 #include <type_traits>
@@ -13,10 +12,16 @@
 
 namespace tess {
 
-/// The proxy of a whole array.
+/// The proxy of a whole array, or of a whole group (GroupProxy). Ending an array, by destroy():
+/// messages, broadcasts, contributions and elements that are still under way to it are dropped where
+/// they arrive; messages and broadcasts count as dead letters. An element with a waiting coroutine
+/// gets no more messages and is destroyed once the coroutine is done.
 template <class C>
-class ArrayProxy : public detail::WholeHandle<ArrayProxy<C>> {
+class ArrayProxy : public detail::WholeHandle<ArrayProxy<C>>, public Broadcasts<ArrayProxy<C>> {
  public:
+  using Receiver = C;
+  template <class Self>
+  using Verbs = Broadcasts<Self>;
   using detail::WholeHandle<ArrayProxy>::WholeHandle;
 
   /// The element of this index. (A template, so that a proxy may be a member of a class before C is
@@ -45,6 +50,30 @@ class ArrayProxy : public detail::WholeHandle<ArrayProxy<C>> {
     static_assert(sizeof(Of) == 0, "an index has one number for each axis, and no more");
   }
 
+  /// The member of a group on that PE.
+  template <std::same_as<PeId> P, class Of = C>
+  [[nodiscard]] ElementProxy<Of, Index1> operator[](P pe) const {
+    static_assert(detail::OnePerPe<Of>,
+                  "an array has an element for each index; groups, for each PE");
+    return {id_, Index1{pe.value}};
+  }
+  /// The member of a group on this PE; null if the group is not known here yet or was destroyed.
+  template <class Of = C>
+  [[nodiscard]] Of* local_or_null() const {
+    static_assert(detail::OnePerPe<Of>, "the elements of an array on this PE: local(index)");
+    const detail::Collection* group = detail::find_collection(current_pe(), id_);
+    return group == nullptr || group->n_local() == 0 ? nullptr
+                                                     : static_cast<Of*>(group->elements().front());
+  }
+  /// The member of a group on this PE.
+  template <class Of = C>
+  [[nodiscard]] Of& local() const {
+    Of* member = local_or_null();
+    if (member == nullptr) [[unlikely]]
+      detail::refuse_absent(id_, "this group", "");
+    return *member;
+  }
+
   /// The element of this index if it is on this PE now, otherwise null. It may leave or be
   /// destroyed once the current message is done, unless a coroutine of it waits.
   template <class Of = C>
@@ -59,31 +88,8 @@ class ArrayProxy : public detail::WholeHandle<ArrayProxy<C>> {
   }
   [[nodiscard]] const Range& range() const { return here().range(); }
 
-  /// Calls entry method F of every element that exists when the broadcast reaches its PE.
-  template <auto F, class... Args>
-  void broadcast(Args&&... args) const {
-    broadcast_as<F>(detail::OfEntry(), std::forward<Args>(args)...);
-  }
-  /// Broadcasts to entry method F, whose last parameter is a Callback<T>, with a new future's
-  /// callback behind these arguments. Returns that Future<T>: `co_await all.reduce<&C::f>(args…)`
-  /// gives the result. The target takes one value; usually each element contributes to it, in F or
-  /// later. The future has the rules of every Future: it belongs to this PE and has to outlive the
-  /// result, so if it is dropped before, the arrival of the result ends the job. If an array that
-  /// is to contribute ends first, no result comes, and the report of the deadlock says what waits.
-  template <auto F, class... Args>
-  [[nodiscard]] detail::FutureOf<F> reduce(Args&&... args) const {
-    return detail::reduce<F>(*this, std::forward<Args>(args)...);
-  }
-  /// The same array for broadcasts with a priority.
-  [[nodiscard]] PrioritisedArray<C> with(Priority priority) const { return {*this, priority}; }
+  friend auto operator<=>(const ArrayProxy&, const ArrayProxy&) = default;
 
-  /// Ends the array: on every PE its elements are destroyed and its memory is freed, including that
-  /// of its balancer. Messages, broadcasts, contributions and elements that are still under way to
-  /// it are dropped where they arrive; messages and broadcasts count as dead letters. An element
-  /// with a waiting coroutine gets no more messages and is destroyed once the coroutine is done.
-  /// The current epoch waits until all PEs have freed the array. Ending an array again has no
-  /// effect.
-  void destroy() const { detail::end_collection(id_); }
   /// True if the array was destroyed and this PE has freed its part, or does so once the waiting
   /// coroutines of its elements are done.
   [[nodiscard]] bool ended() const { return current_pe().ended(id_); }
@@ -96,12 +102,6 @@ class ArrayProxy : public detail::WholeHandle<ArrayProxy<C>> {
     return {array->n_destroyed(), array->last_destroyed()};
   }
 
-  /// A target for results: entry method F of all elements.
-  template <auto F>
-  [[nodiscard]] auto target() const {
-    return detail::TargetOf<ArrayProxy, F>::make(id_);
-  }
-
   /// The part of the array on this PE with its local elements, for libraries and tests.
   [[nodiscard]] detail::Array<C>& here() const {
     detail::Collection* collection = detail::find_collection(current_pe(), id_);
@@ -111,9 +111,7 @@ class ArrayProxy : public detail::WholeHandle<ArrayProxy<C>> {
   }
 
  private:
-  friend class PrioritisedArray<C>;
-  template <class, auto>
-  friend struct detail::TargetOf;
+  friend detail::ProxyAccess;
 
   template <auto F, class Of, class... Args>
   void broadcast_as(Of of, Args&&... args) const {
@@ -124,10 +122,7 @@ class ArrayProxy : public detail::WholeHandle<ArrayProxy<C>> {
                  of, detail::as_parameters<Arguments>(std::forward<Args>(args)...))));
   }
 
-  template <auto F, class... Value>
-  void give(Value&&... value) const {
-    broadcast<F>(std::forward<Value>(value)...);
-  }
+  [[nodiscard]] std::tuple<CollectionId> fields() const { return {id_}; }
   [[nodiscard]] std::string in_words() const {
     return "all elements of " + plain_name(name_of_type<C>);
   }
@@ -136,6 +131,3 @@ class ArrayProxy : public detail::WholeHandle<ArrayProxy<C>> {
 };
 
 }  // namespace tess
-
-template <class C>
-struct std::hash<tess::ArrayProxy<C>> : tess::detail::HashOfHandle {};

@@ -236,14 +236,6 @@ consteval auto reduced_value() {
 template <auto F>
 using FutureOf = Future<typename decltype(reduced_value<F>())::type>;
 
-/// The reduce() of all proxies that broadcast.
-template <auto F, class Proxy, class... Args>
-[[nodiscard]] FutureOf<F> reduce(const Proxy& all, Args&&... args) {
-  FutureOf<F> result;
-  all.template broadcast<F>(std::forward<Args>(args)..., result.callback());
-  return result;
-}
-
 }  // namespace detail
 
 }  // namespace tess

@@ -88,22 +88,23 @@ struct Through {
 }  // namespace detail
 
 template <class I, class IndexType>
-class PrioritisedInterface;
-template <class I, class IndexType>
 class InterfaceArray;
 
 /// The proxy of an element by an interface of its class: a value that can be stored and sent. I may
 /// be any class with virtual functions; a priority in its EntryAttributes holds for its messages,
 /// create_here and create_home do not compile.
 template <class I, class IndexType = Index1>
-class InterfaceProxy {
+class InterfaceProxy : public Sends<InterfaceProxy<I, IndexType>> {
   using Class = detail::Implements<I, IndexType>;
   using Head = detail::Through<I>;
 
  public:
   using Index = IndexType;
+  using Receiver = I;
+  template <class Self>
+  using Verbs = Sends<Self>;
 
-  /// Of no element: it can only be assigned to.
+  /// It refers to no element: it can only be assigned to.
   InterfaceProxy() = default;
   /// The element as it is seen by its interface.
   template <class C>
@@ -114,36 +115,6 @@ class InterfaceProxy {
   }
   template <class C>
   InterfaceProxy(const ChareProxy<C>& chare) : InterfaceProxy(chare.element()) {}
-
-  /// As ElementProxy::send(); F is a member function of the interface.
-  template <auto F, class... Args>
-  void send(Args&&... args) const {
-    send_with<F>(Priority{detail::entry_rule<I, F>.priority}, std::forward<Args>(args)...);
-  }
-  /// As ElementProxy::send_after().
-  template <auto F, class... Args>
-  Timer send_after(std::chrono::nanoseconds delay, Args&&... args) const {
-    static_assert(detail::check_entry<I, F, Args...>());
-    using Arguments = typename detail::EntryTraits<F>::Arguments;
-    return after(delay, [to = *this, arguments = detail::as_parameters<Arguments>(
-                                         std::forward<Args>(args)...)] {
-      std::apply([&to](const auto&... argument) { to.template send<F>(argument...); }, arguments);
-    });
-  }
-  /// As ElementProxy::ask().
-  template <auto F, class... Args>
-  [[nodiscard]] Ask<Class, F> ask(Args&&... args) const {
-    return ask_with<F>(Priority{detail::entry_rule<I, F>.priority}, std::forward<Args>(args)...);
-  }
-  /// The same element for messages with a priority.
-  [[nodiscard]] PrioritisedInterface<I, IndexType> with(Priority priority) const {
-    return {*this, priority};
-  }
-  /// A target for results: member function F of the interface.
-  template <auto F>
-  [[nodiscard]] auto target() const {
-    return detail::TargetOf<InterfaceProxy, F>::make(collection_, index_, face_);
-  }
 
   [[nodiscard]] const Index& index() const { return index_; }
 
@@ -157,36 +128,37 @@ class InterfaceProxy {
   }
 
  private:
-  friend class PrioritisedInterface<I, IndexType>;
   friend class InterfaceArray<I, IndexType>;
-  template <class, auto>
-  friend struct detail::TargetOf;
+  friend detail::ProxyAccess;
 
   InterfaceProxy(CollectionId collection, const Index& index, detail::FacePointer<I> face)
       : collection_(collection), index_(index), face_(face) {}
 
-  template <auto F>
-  static consteval bool creates_none() {
+  static consteval bool check_on_demand() {
+    static_assert(sizeof(I) == 0, "an interface creates no element: its class is not known");
+    return false;
+  }
+  template <auto F, class Of>
+  [[nodiscard]] Head head(detail::How<Of> how) const {
     static_assert(detail::entry_rule<I, F>.creates == detail::Creates::no,
                   "an interface creates no element: its class is not known");
-    return true;
+    return {face_, Priority{detail::priority_by<I, F>(how.of)}};
   }
-  template <auto F, class... Args>
-  void send_with(Priority priority, Args&&... args) const {
+  template <auto F, class Of, class... Args>
+  void post(detail::How<Of> how, Args&&... args) const {
     static_assert(detail::check_entry<I, F, Args...>());
-    static_assert(creates_none<F>());
     Pe& pe = current_pe();
-    post(pe, detail::Call<Class, Head, F>::make(pe, collection(), index_, Head{face_, priority},
-                                                std::forward<Args>(args)...));
+    post_message(pe, detail::Call<Class, Head, F>::make(pe, collection(), index_, head<F>(how),
+                                                        std::forward<Args>(args)...));
   }
-  template <auto F, class... Args>
-  [[nodiscard]] Ask<Class, F> ask_with(Priority priority, Args&&... args) const {
+  template <auto F, class Of, class... Args>
+  [[nodiscard]] Ask<Class, F> ask_as(detail::How<Of> how, Args&&... args) const {
     static_assert(detail::check_ask<I, F, Args...>());
-    static_assert(creates_none<F>());
     Pe& pe = current_pe();
     Ask<Class, F> reply(collection(), index_);
-    post(pe, detail::AskCall<Class, Head, F>::make(pe, collection_, index_, Head{face_, priority},
-                                                   reply.place(), std::forward<Args>(args)...));
+    post_message(pe,
+                 detail::AskCall<Class, Head, F>::make(pe, collection_, index_, head<F>(how),
+                                                       reply.place(), std::forward<Args>(args)...));
     return reply;
   }
   [[nodiscard]] CollectionId collection() const {
@@ -195,7 +167,7 @@ class InterfaceProxy {
     return collection_;
   }
   template <class Message>
-  void post(Pe& pe, Message* message) const {
+  void post_message(Pe& pe, Message* message) const {
     if (detail::Meter* meter = pe.meter(); meter != nullptr && meter->weighs_messages())
         [[unlikely]]
       meter->sent({collection_, IndexHash<Index>()(index_)},
@@ -208,9 +180,8 @@ class InterfaceProxy {
       pe.send_here(message);  // it waits until the array is known here
     }
   }
-  template <auto F, class... Value>
-  void give(Value&&... value) const {
-    send<F>(std::forward<Value>(value)...);
+  [[nodiscard]] std::tuple<CollectionId, Index, detail::FacePointer<I>> fields() const {
+    return {collection_, index_, face_};
   }
   [[nodiscard]] std::string in_words() const {
     return text(plain_name(name_of_type<I>), index_text(index_));
@@ -221,58 +192,21 @@ class InterfaceProxy {
   detail::FacePointer<I> face_;
 };
 
-/// An element by its interface, and the priority of what is sent to it: shape.with(priority).
-template <class I, class IndexType>
-class PrioritisedInterface {
- public:
-  PrioritisedInterface(const InterfaceProxy<I, IndexType>& element, Priority priority)
-      : element_(element), priority_(priority) {}
-
-  // As those of InterfaceProxy.
-  template <auto F, class... Args>
-  void send(Args&&... args) const {
-    element_.template send_with<F>(priority_, std::forward<Args>(args)...);
-  }
-  template <auto F, class... Args>
-  [[nodiscard]] auto ask(Args&&... args) const {
-    return element_.template ask_with<F>(priority_, std::forward<Args>(args)...);
-  }
-
- private:
-  InterfaceProxy<I, IndexType> element_;
-  Priority priority_;
-};
-
 /// The proxy of an array by an interface of its elements' class.
 template <class I, class IndexType = Index1>
-class InterfaceArray {
+class InterfaceArray : public Broadcasts<InterfaceArray<I, IndexType>> {
  public:
   using Index = IndexType;
+  using Receiver = I;
+  template <class Self>
+  using Verbs = Broadcasts<Self>;
 
-  /// Of no array: it can only be assigned to.
+  /// It refers to no array: it can only be assigned to.
   InterfaceArray() = default;
   template <class C>
   InterfaceArray(const ArrayProxy<C>& array) : id_(array.id()) {
     if constexpr (detail::check_interface<C, I, IndexType>())
       face_ = detail::FacePointer<I>(detail::FaceOf<I, C>::face);
-  }
-
-  /// As ArrayProxy::broadcast(); F is a member function of the interface.
-  template <auto F, class... Args>
-  void broadcast(Args&&... args) const {
-    static_assert(detail::check_broadcast<I, F, Args...>());
-    using Arguments = typename detail::EntryTraits<F>::Arguments;
-    TESS_CHECK(!face_.empty(), "a broadcast to an empty InterfaceArray<", name_of_type<I>,
-               ">: assign an array to it first");
-    detail::start_broadcast(id_,
-                            detail::SharedCall(new detail::CallOfAll<I, detail::Through<I>, F>(
-                                {face_, Priority{detail::entry_rule<I, F>.priority}},
-                                detail::as_parameters<Arguments>(std::forward<Args>(args)...))));
-  }
-  /// As ArrayProxy::reduce(); F is a member function of the interface.
-  template <auto F, class... Args>
-  [[nodiscard]] detail::FutureOf<F> reduce(Args&&... args) const {
-    return detail::reduce<F>(*this, std::forward<Args>(args)...);
   }
 
   [[nodiscard]] InterfaceProxy<I, IndexType> operator[](const Index& index) const {
@@ -288,13 +222,28 @@ class InterfaceArray {
   }
 
  private:
+  friend detail::ProxyAccess;
+
+  template <auto F, class Of, class... Args>
+  void broadcast_as(Of of, Args&&... args) const {
+    static_assert(detail::check_broadcast<I, F, Args...>());
+    using Arguments = typename detail::EntryTraits<F>::Arguments;
+    TESS_CHECK(!face_.empty(), "a broadcast to an empty InterfaceArray<", name_of_type<I>,
+               ">: assign an array to it first");
+    detail::start_broadcast(id_,
+                            detail::SharedCall(new detail::CallOfAll<I, detail::Through<I>, F>(
+                                {face_, Priority{detail::priority_by<I, F>(of)}},
+                                detail::as_parameters<Arguments>(std::forward<Args>(args)...))));
+  }
+  [[nodiscard]] std::tuple<CollectionId, detail::FacePointer<I>> fields() const {
+    return {id_, face_};
+  }
+  [[nodiscard]] std::string in_words() const {
+    return "all elements of " + plain_name(name_of_type<I>);
+  }
+
   CollectionId id_{};
   detail::FacePointer<I> face_;
 };
 
 }  // namespace tess
-
-template <class I, class Index>
-struct std::hash<tess::InterfaceProxy<I, Index>> : tess::detail::HashOfHandle {};
-template <class I, class Index>
-struct std::hash<tess::InterfaceArray<I, Index>> : tess::detail::HashOfHandle {};

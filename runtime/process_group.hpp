@@ -9,7 +9,7 @@
 //       // …
 //     };
 //     // …
-//     caches = tess::create_process_group<Cache>();
+//     caches = tess::create<Cache>(tess::each_process);
 //     // …
 //     caches.write([](Cache& cache) { cache.put(3, 0.5); });  // this process, at once
 //     caches[process].send<&Cache::put>(4, 1.5);              // any process, by a message
@@ -85,13 +85,14 @@ class ProcessPart : public Group<ProcessPart<G>> {
     return f(shared_->object);
   }
 
-  /// Calls entry method F of the object.
+  /// Calls entry method F of the object; returns what that returns.
   template <auto F>
-  void run(typename EntryTraits<F>::Arguments arguments) {
+  typename EntryTraits<F>::Result run(typename EntryTraits<F>::Arguments arguments) {
     const auto call = [&arguments](auto& object) {
-      std::apply([&object](auto&... argument) { (object.*F)(std::move(argument)...); }, arguments);
+      return std::apply(
+          [&object](auto&... argument) { return (object.*F)(std::move(argument)...); }, arguments);
     };
-    run_as(call, F);
+    return run_as(call, F);
   }
   /// The same for a broadcast: on one PE of each process.
   template <auto F>
@@ -101,20 +102,20 @@ class ProcessPart : public Group<ProcessPart<G>> {
 
  private:
   template <class Call, class R, class C, class... P>
-  void run_as(const Call& call, R (C::*)(P...)) {
-    write(call);
+  R run_as(const Call& call, R (C::*)(P...)) {
+    return write(call);
   }
   template <class Call, class R, class C, class... P>
-  void run_as(const Call& call, R (C::*)(P...) const) {
-    read(call);
+  R run_as(const Call& call, R (C::*)(P...) const) {
+    return read(call);
   }
   template <class Call, class R, class C, class... P>
-  void run_as(const Call& call, R (C::*)(P...) noexcept) {
-    write(call);
+  R run_as(const Call& call, R (C::*)(P...) noexcept) {
+    return write(call);
   }
   template <class Call, class R, class C, class... P>
-  void run_as(const Call& call, R (C::*)(P...) const noexcept) {
-    read(call);
+  R run_as(const Call& call, R (C::*)(P...) const noexcept) {
+    return read(call);
   }
 
   /// Refuses what would wait for itself.
@@ -204,24 +205,88 @@ CollectionId create_shared(Args&&... args) {
   return id;
 }
 
-/// Checks that F is an entry method of a process group's class.
+/// Checks that F can be called on the object of a process.
 template <class G, auto F, class... Args>
-consteval bool check_shared_entry() {
-  static_assert(check_entry<G, F, Args...>());
-  static_assert(std::is_void_v<typename EntryTraits<F>::Result>,
-                "an entry method of a process group returns void: a coroutine would keep the lock "
+consteval bool check_shared_call() {
+  static_assert(check_ask<G, F, Args...>());
+  static_assert(!GivenBy<typename EntryTraits<F>::Result>::is_task,
+                "an entry method of a process group is no coroutine, which would keep the lock "
                 "while it waits");
   return true;
 }
 
 }  // namespace detail
 
-/// The proxy of a process group.
+/// The object of one process, for messages.
 template <class G>
-class ProcessGroupProxy : public detail::WholeHandle<ProcessGroupProxy<G>> {
+class ProcessProxy : public Sends<ProcessProxy<G>> {
   using Part = detail::ProcessPart<G>;
 
  public:
+  using Receiver = G;
+  template <class Self>
+  using Verbs = Sends<Self>;
+
+  /// It refers to no object: it can only be assigned to.
+  ProcessProxy() = default;
+  ProcessProxy(CollectionId id, ProcessId process) : id_(id), process_(process) {}
+
+  friend auto operator<=>(const ProcessProxy&, const ProcessProxy&) = default;
+  [[nodiscard]] std::size_t hash() const { return member().hash(); }
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(id_, process_);
+  }
+
+ private:
+  friend detail::ProxyAccess;
+
+  /// The part on this PE, or on the first of another process.
+  [[nodiscard]] MemberProxy<Part> member() const {
+    Pe& pe = current_pe();
+    const Machine& machine = pe.machine();
+    TESS_CHECK(process_.value >= 0 && process_.value < machine.n_processes(), "there is no ",
+               process_, ": the run has ", machine.n_processes());
+    return GroupProxy<Part>(
+        id_)[process_ == machine.process_of(pe.id()) ? pe.id() : machine.first_pe(process_)];
+  }
+  template <auto F, class Of, class... Args>
+  void post(detail::How<Of> how, Args&&... args) const {
+    static_assert(detail::check_entry<G, F, Args...>() &&
+                  detail::check_shared_call<G, F, Args...>());
+    using Arguments = typename detail::EntryTraits<F>::Arguments;
+    detail::ProxyAccess::post<&Part::template run<F>>(
+        member(), how, detail::as_parameters<Arguments>(std::forward<Args>(args)...));
+  }
+  template <auto F, class Of, class... Args>
+  [[nodiscard]] auto ask_as(detail::How<Of> how, Args&&... args) const {
+    static_assert(detail::check_shared_call<G, F, Args...>());
+    using Arguments = typename detail::EntryTraits<F>::Arguments;
+    return detail::ProxyAccess::ask<&Part::template run<F>>(
+        member(), how, detail::as_parameters<Arguments>(std::forward<Args>(args)...));
+  }
+  static consteval bool check_on_demand() {
+    return detail::ProxyAccess::check_on_demand<MemberProxy<Part>>();
+  }
+  [[nodiscard]] std::tuple<CollectionId, ProcessId> fields() const { return {id_, process_}; }
+  [[nodiscard]] std::string in_words() const {
+    return text(plain_name(name_of_type<G>), " of ", process_);
+  }
+
+  CollectionId id_{};
+  ProcessId process_{};
+};
+
+/// The proxy of a process group; broadcast() calls the entry method once in each process.
+template <class G>
+class ProcessGroupProxy : public detail::WholeHandle<ProcessGroupProxy<G>>,
+                          public Broadcasts<ProcessGroupProxy<G>> {
+  using Part = detail::ProcessPart<G>;
+
+ public:
+  using Receiver = G;
+  template <class Self>
+  using Verbs = Broadcasts<Self>;
   using detail::WholeHandle<ProcessGroupProxy>::WholeHandle;
 
   /// Returns f(const G&) for the object of this process, while others may read it.
@@ -241,55 +306,47 @@ class ProcessGroupProxy : public detail::WholeHandle<ProcessGroupProxy<G>> {
     return GroupProxy<Part>(id_).local().write(f);
   }
 
-  /// The object of a process, for messages.
-  class OfProcess {
-   public:
-    OfProcess(CollectionId id, ProcessId process) : id_(id), process_(process) {}
-    template <auto F, class... Args>
-    void send(Args&&... args) const {
-      static_assert(detail::check_shared_entry<G, F, Args...>());
-      Pe& pe = current_pe();
-      const Machine& machine = pe.machine();
-      TESS_CHECK(process_.value >= 0 && process_.value < machine.n_processes(), "there is no ",
-                 process_, ": the run has ", machine.n_processes());
-      const PeId to =
-          process_ == machine.process_of(pe.id()) ? pe.id() : machine.first_pe(process_);
-      GroupProxy<Part>(id_)[to].template send<&Part::template run<F>>(
-          detail::as_parameters<typename detail::EntryTraits<F>::Arguments>(
-              std::forward<Args>(args)...));
-    }
-
-   private:
-    CollectionId id_;
-    ProcessId process_;
-  };
-  [[nodiscard]] OfProcess operator[](ProcessId process) const { return {id_, process}; }
-
-  /// Calls entry method F once in each process.
-  template <auto F, class... Args>
-  void broadcast(Args&&... args) const {
-    static_assert(detail::check_shared_entry<G, F, Args...>());
-    GroupProxy<Part>(id_).template broadcast<&Part::template run_once<F>>(
-        detail::as_parameters<typename detail::EntryTraits<F>::Arguments>(
-            std::forward<Args>(args)...));
-  }
+  [[nodiscard]] ProcessProxy<G> operator[](ProcessId process) const { return {id_, process}; }
 
   /// True if the group is there on this PE.
   [[nodiscard]] bool known() const { return GroupProxy<Part>(id_).local_or_null() != nullptr; }
-  /// Ends the group on all PEs.
-  void destroy() const { detail::end_collection(id_); }
+
+  friend auto operator<=>(const ProcessGroupProxy&, const ProcessGroupProxy&) = default;
 
  private:
+  friend detail::ProxyAccess;
   using detail::WholeHandle<ProcessGroupProxy>::id_;
+
+  template <auto F, class Of, class... Args>
+  void broadcast_as(Of of, Args&&... args) const {
+    static_assert(detail::check_broadcast<G, F, Args...>() &&
+                  detail::check_shared_call<G, F, Args...>());
+    using Arguments = typename detail::EntryTraits<F>::Arguments;
+    detail::ProxyAccess::broadcast<&Part::template run_once<F>>(
+        GroupProxy<Part>(id_), of, detail::as_parameters<Arguments>(std::forward<Args>(args)...));
+  }
+  [[nodiscard]] std::tuple<CollectionId> fields() const { return {id_}; }
+  [[nodiscard]] std::string in_words() const {
+    return plain_name(name_of_type<G>) + " of all processes";
+  }
 };
+
+/// Where the objects of create() are: one in each process.
+struct EachProcess {};
+inline constexpr EachProcess each_process{};
 
 /// Creates one G in each process, constructed with these arguments.
 template <class G, class... Args>
-ProcessGroupProxy<G> create_process_group(Args&&... args) {
+ProcessGroupProxy<G> create(EachProcess /*where*/, Args&&... args) {
   static_assert(std::is_constructible_v<G, std::decay_t<Args>...>,
                 "the class has no constructor that takes these arguments");
   return ProcessGroupProxy<G>(
       detail::create_shared<detail::ProcessPart<G>>(std::forward<Args>(args)...));
+}
+template <class G, class... Args>
+[[deprecated("create<G>(tess::each_process, …)")]] ProcessGroupProxy<G> create_process_group(
+    Args&&... args) {
+  return create<G>(each_process, std::forward<Args>(args)...);
 }
 
 /// Data that all PEs of a process read in the same memory.
@@ -298,6 +355,7 @@ class ReadOnly : public detail::WholeHandle<ReadOnly<T>> {
   using Part = detail::ReadOnlyPart<T>;
 
  public:
+  using IsHandle = void;
   using detail::WholeHandle<ReadOnly>::WholeHandle;
 
   /// The data; valid until destroy().
@@ -305,8 +363,6 @@ class ReadOnly : public detail::WholeHandle<ReadOnly<T>> {
   [[nodiscard]] const T* operator->() const { return &**this; }
   /// True if the data is there on this PE.
   [[nodiscard]] bool known() const { return GroupProxy<Part>(id_).local_or_null() != nullptr; }
-  /// Frees the data in all processes.
-  void destroy() const { detail::end_collection(id_); }
 
  private:
   using detail::WholeHandle<ReadOnly>::id_;
@@ -320,8 +376,3 @@ ReadOnly<std::decay_t<T>> create_read_only(T&& data) {
 }
 
 }  // namespace tess
-
-template <class G>
-struct std::hash<tess::ProcessGroupProxy<G>> : tess::detail::HashOfHandle {};
-template <class T>
-struct std::hash<tess::ReadOnly<T>> : tess::detail::HashOfHandle {};

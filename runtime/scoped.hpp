@@ -24,10 +24,8 @@ namespace tess {
 /// A handle to something that lives on all PEs: ArrayProxy, GroupProxy, collide::Collider,
 /// m2m::DistributedMesh.
 template <class H>
-concept DestroyableHandle =
-    std::default_initializable<H> && std::copyable<H> && requires(const H& handle) {
-      { handle.destroy() } -> std::same_as<void>;
-    };
+concept DestroyableHandle = std::default_initializable<H> && std::copyable<H> &&
+                            requires(const H& handle) { handle.destroy(); };
 
 /// A handle that calls destroy() of what it refers to when its scope ends, on the PE where it does.
 /// It can be moved, and neither copied nor sent: a message takes a copy of the handle, which owns

@@ -13,6 +13,7 @@
 #include "runtime/array.hpp"
 #include "runtime/collections/arrays/section_lists.hpp"
 
+#include <tuple>
 #include <type_traits>
 #include <unordered_map>
 #include <utility>
@@ -22,49 +23,24 @@ namespace tess {
 
 /// The proxy of a section: a small value that can be stored, sent, and used on every PE.
 template <class C>
-class SectionProxy {
+class SectionProxy : public Broadcasts<SectionProxy<C>> {
  public:
-  /// Of no section: it can only be assigned to.
+  using Receiver = C;
+  template <class Self>
+  using Verbs = Broadcasts<Self>;
+
+  /// It refers to no section: it can only be assigned to.
   SectionProxy() = default;
   SectionProxy(CollectionId array, detail::SectionId id) : array_(array), id_(id) {}
 
   [[nodiscard]] ArrayProxy<C> array() const { return ArrayProxy<C>(array_); }
 
-  /// Calls entry method F of each member once, also of those that the list finds later. All members
-  /// receive the multicasts of a section in one order.
-  template <auto F, class... Args>
-  void broadcast(Args&&... args) const {
-    static_assert(detail::check_broadcast<C, F, Args...>());
-    using Arguments = typename detail::EntryTraits<F>::Arguments;
-    using Lists = detail::SectionListsOf<typename C::Index>;
-    require_section("a broadcast to");
-    Pe& pe = current_pe();
-    detail::SectionCall call;
-    call.numbered.epoch = pe.context().epoch;
-    call.numbered.call = detail::SharedCall(new detail::CallOfAll<C, detail::OfEntry, F>(
-        {}, detail::as_parameters<Arguments>(std::forward<Args>(args)...)));
-    if (pe.context().led_by != 0) call.led_by = detail::Collection::led_by(pe.context(), array_);
-    detail::send_to_collection<&Lists::start_arrives>(pe, array_, root(pe), {id_, std::move(call)});
-  }
-  /// As ArrayProxy::reduce(). For a result of the members F contributes to the section, which it
-  /// therefore knows: row.reduce<&Block::add>(row), with contribute(row, op, value, target).
-  template <auto F, class... Args>
-  [[nodiscard]] detail::FutureOf<F> reduce(Args&&... args) const {
-    return detail::reduce<F>(*this, std::forward<Args>(args)...);
-  }
-
   /// Ends the section: it frees what it holds on every PE; its members stay. What is still under
   /// way to it is dropped: multicasts and contributions. The current epoch waits until all PEs have
   /// freed it. Ending a section again has no effect.
-  void destroy() const {
+  auto destroy() const {
     require_section("destroy() of");
-    detail::end_section(array_, id_);
-  }
-
-  /// A target for results: entry method F of all members.
-  template <auto F>
-  [[nodiscard]] auto target() const {
-    return detail::TargetOf<SectionProxy, F>::make(array_, id_);
+    return detail::Deed([array = array_, id = id_] { detail::end_section(array, id); });
   }
 
   friend auto operator<=>(const SectionProxy&, const SectionProxy&) = default;
@@ -77,8 +53,24 @@ class SectionProxy {
  private:
   template <class>
   friend class detail::TessContributor;
-  template <class, auto>
-  friend struct detail::TargetOf;
+  friend detail::ProxyAccess;
+
+  /// Calls each member once, also those that the list finds later. All members receive the
+  /// multicasts of a section in one order.
+  template <auto F, class Of, class... Args>
+  void broadcast_as(Of of, Args&&... args) const {
+    static_assert(detail::check_broadcast<C, F, Args...>());
+    using Arguments = typename detail::EntryTraits<F>::Arguments;
+    using Lists = detail::SectionListsOf<typename C::Index>;
+    require_section("a broadcast to");
+    Pe& pe = current_pe();
+    detail::SectionCall call;
+    call.numbered.epoch = pe.context().epoch;
+    call.numbered.call = detail::SharedCall(new detail::CallOfAll<C, Of, F>(
+        of, detail::as_parameters<Arguments>(std::forward<Args>(args)...)));
+    if (pe.context().led_by != 0) call.led_by = detail::Collection::led_by(pe.context(), array_);
+    detail::send_to_collection<&Lists::start_arrives>(pe, array_, root(pe), {id_, std::move(call)});
+  }
   void require_section(const char* use) const {
     TESS_CHECK(array_ != CollectionId{}, use, " an empty SectionProxy<", name_of_type<C>,
                ">: assign create_section() to it first");
@@ -87,10 +79,7 @@ class SectionProxy {
     return detail::root_of(CollectionId{id_.value}, pe.n_pes());
   }
 
-  template <auto F, class... Value>
-  void give(Value&&... value) const {
-    broadcast<F>(std::forward<Value>(value)...);
-  }
+  [[nodiscard]] std::tuple<CollectionId, detail::SectionId> fields() const { return {array_, id_}; }
   [[nodiscard]] std::string in_words() const {
     return "the members of a section of " + plain_name(name_of_type<C>);
   }
@@ -144,6 +133,3 @@ SectionProxy<C> create_section_if(const ArrayProxy<C>& array, const Condition& c
 }
 
 }  // namespace tess
-
-template <class C>
-struct std::hash<tess::SectionProxy<C>> : tess::detail::HashOfHandle {};

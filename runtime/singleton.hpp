@@ -1,7 +1,7 @@
 // One chare without an index:
 //
-//     const auto census = tess::create_one<Census>(args…);               // the runtime chooses the PE
-//     const auto writer = tess::create_one_on<Writer>(tess::PeId{0}, path);
+//     const auto census = tess::create<Census>(tess::one, args…);  // the runtime chooses the PE
+//     const auto writer = tess::create<Writer>(tess::one_on(tess::PeId{0}), path);
 //     census.send<&Census::add>(3);
 //
 // It is an array of one element, so it may migrate, and its proxy can be sent. Each is known on
@@ -18,47 +18,43 @@
 
 namespace tess {
 
-/// The proxy of a chare that create_one() made.
+/// The proxy of a single chare.
 template <class C>
-class ChareProxy : public detail::WholeHandle<ChareProxy<C>> {
+class ChareProxy : public detail::WholeHandle<ChareProxy<C>>, public Sends<ChareProxy<C>> {
   static_assert(std::is_default_constructible_v<typename C::Index>,
                 "the index of a single chare has a default constructor");
 
  public:
+  using Receiver = C;
+  template <class Self>
+  using Verbs = Sends<Self>;
   using detail::WholeHandle<ChareProxy>::WholeHandle;
 
-  template <auto F, class... Args>
-  void send(Args&&... args) const {
-    element().template send<F>(std::forward<Args>(args)...);
-  }
-  /// As ElementProxy::send_after().
-  template <auto F, class... Args>
-  Timer send_after(std::chrono::nanoseconds delay, Args&&... args) const {
-    return element().template send_after<F>(delay, std::forward<Args>(args)...);
-  }
-  /// As ElementProxy::ask().
-  template <auto F, class... Args>
-  [[nodiscard]] Ask<C, F> ask(Args&&... args) const {
-    return element().template ask<F>(std::forward<Args>(args)...);
-  }
-  /// The same chare for messages with a priority.
-  [[nodiscard]] auto with(Priority priority) const { return element().with(priority); }
-  /// A target for results: entry method F.
-  template <auto F>
-  [[nodiscard]] auto target() const {
-    return element().template target<F>();
-  }
   void migrate_to(PeId pe) const { element().migrate_to(pe); }
   [[nodiscard]] PeId next_pe() const { return element().next_pe(); }
-
-  /// Ends the chare and frees it on every PE, as ArrayProxy::destroy().
-  void destroy() const { detail::end_collection(id_); }
 
   /// The chare as the element that it is.
   [[nodiscard]] ElementProxy<C> element() const { return {id_, typename C::Index{}}; }
 
+  friend auto operator<=>(const ChareProxy&, const ChareProxy&) = default;
+
  private:
+  friend detail::ProxyAccess;
   using detail::WholeHandle<ChareProxy>::id_;
+
+  template <auto F, class Of, class... Args>
+  void post(detail::How<Of> how, Args&&... args) const {
+    detail::ProxyAccess::post<F>(element(), how, std::forward<Args>(args)...);
+  }
+  template <auto F, class Of, class... Args>
+  [[nodiscard]] Ask<C, F> ask_as(detail::How<Of> how, Args&&... args) const {
+    return detail::ProxyAccess::ask<F>(element(), how, std::forward<Args>(args)...);
+  }
+  static consteval bool check_on_demand() {
+    return detail::ProxyAccess::check_on_demand<ElementProxy<C>>();
+  }
+  [[nodiscard]] std::tuple<CollectionId> fields() const { return {id_}; }
+  [[nodiscard]] std::string in_words() const { return detail::ProxyAccess::in_words(element()); }
 };
 
 namespace detail {
@@ -90,25 +86,34 @@ ChareProxy<C> create_for_one(PeId given) {
 
 }  // namespace detail
 
-/// Creates one chare on that PE. Returns immediately: messages wait for it.
-template <class C, class... Args>
-ChareProxy<C> create_one_on(PeId pe, Args&&... args) {
-  detail::check_exists(current_pe(), pe);
-  const auto chare = detail::create_for_one<C>(pe);
-  chare.element().insert_on(pe, std::forward<Args>(args)...);
-  return chare;
+/// Where the element of create() is: on that PE, or on one that the runtime chooses; many such
+/// chares are spread over all PEs.
+struct One {
+  PeId pe{-1};
+};
+inline constexpr One one{};
+[[nodiscard]] constexpr One one_on(PeId pe) {
+  return {pe};
 }
 
-/// The same; the runtime chooses the PE. Many such chares are spread over all PEs.
+/// Creates one chare, constructed with these arguments. Returns immediately: messages wait for it.
 template <class C, class... Args>
-ChareProxy<C> create_one(Args&&... args) {
-  const auto chare = detail::create_for_one<C>(PeId{-1});
-  chare.element().insert_on(detail::root_of(chare.id(), current_pe().n_pes()),
-                            std::forward<Args>(args)...);
+ChareProxy<C> create(One where, Args&&... args) {
+  if (where.pe != one.pe) detail::check_exists(current_pe(), where.pe);
+  const auto chare = detail::create_for_one<C>(where.pe);
+  chare.element().insert_on(
+      where.pe != one.pe ? where.pe : detail::root_of(chare.id(), current_pe().n_pes()),
+      std::forward<Args>(args)...);
   return chare;
+}
+template <class C, class... Args>
+[[deprecated("create<C>(tess::one_on(pe), …)")]] ChareProxy<C> create_one_on(PeId pe,
+                                                                             Args&&... args) {
+  return create<C>(one_on(pe), std::forward<Args>(args)...);
+}
+template <class C, class... Args>
+[[deprecated("create<C>(tess::one, …)")]] ChareProxy<C> create_one(Args&&... args) {
+  return create<C>(one, std::forward<Args>(args)...);
 }
 
 }  // namespace tess
-
-template <class C>
-struct std::hash<tess::ChareProxy<C>> : tess::detail::HashOfHandle {};

@@ -32,7 +32,7 @@ void Share::give(tess::Callback<std::int64_t> target) {
 std::int64_t total;  // on process 0: what the run has found
 
 tess::Task add_up() {
-  const auto shares = tess::create_group<Share>();
+  const auto shares = tess::create<Share>(tess::each_pe);
   total = co_await shares.reduce<&Share::give>();
 }
 

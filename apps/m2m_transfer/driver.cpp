@@ -116,7 +116,7 @@ Task transfer_once(const Options& options, kit::Driver& driver) {
   const bool writes_whole = !out.empty() && !in_parts;
   problem.collects = writes_whole || !options.picture.empty();
   explain_to_user(driver, explain(problem, out.empty() ? Output::report : Output::mesh));
-  co_await measure(problem, create_group<Gauge>(), driver.progress());
+  co_await measure(problem, create<Gauge>(each_pe), driver.progress());
   driver.progress().phase("writing");
   if (problem.collects) bring_targets(problem);
   write_reports(driver, problem.reports);
@@ -135,7 +135,7 @@ Task transfer_all_kinds(const Options& options, kit::Driver& driver) {
   const std::vector<TransferKind> kinds = kinds_of(driver, options);
   request.kind = name_of(kinds.front());
   const Problem read_once = co_await read(request, driver.progress());
-  const auto gauge = create_group<Gauge>();
+  const auto gauge = create<Gauge>(each_pe);
   Reports reports;
   for (const TransferKind kind : kinds) {
     driver.progress().part(reports.size() / read_once.pairs.size() + 1, kinds.size());
@@ -170,7 +170,7 @@ Task run_study(const Options& options, kit::Driver& driver) {
   std::vector<Request> requests = plan_study(options.request, options.policies, kinds);
   const std::string folder = folder_of(options);
   const std::int32_t repeat = options.repeat.value_or(3);
-  const auto gauge = create_group<Gauge>();
+  const auto gauge = create<Gauge>(each_pe);
   Reports reports;
   for (Request& request : requests) {
     driver.progress().part(reports.size() + 1, requests.size());

@@ -154,7 +154,7 @@ tess::Task search(Problem problem, Outcome& outcome, std::vector<Board> boards) 
   tess::GroupProxy<Searcher> searchers;
   tess::ArrayProxy<Branch> branches;
   co_await tess::epoch([&] {
-    searchers = tess::create_group<Searcher>(problem);
+    searchers = tess::create<Searcher>(tess::each_pe, problem);
     branches = tess::create<Branch>(tess::sparse);
     searchers.broadcast<&Searcher::use>(branches);
   });

@@ -10,6 +10,9 @@ namespace {
 struct End {
   CollectionId id{};
 };
+struct Knock {
+  CollectionId id{};
+};
 struct Free {
   CollectionId id{};
 };
@@ -26,6 +29,11 @@ void end_arrives(Pe& pe, End&& m, Counted /*counted*/) {
   send_to_collection<&ending_arrives>(pe, m.id, pe.id(), m);
 }
 
+void knocking_arrives(Collection& /*collection*/, Knock&& /*m*/, Counted /*counted*/) {}
+void knock_arrives(Pe& pe, Knock&& m, Counted /*counted*/) {
+  send_to_collection<&knocking_arrives>(pe, m.id, pe.id(), m);
+}
+
 void freeing_arrives(Pe& pe, Free&& m) {
   const Pe::Ending ending = pe.take_ending(m.id);  // frees it at the end of this function
 }
@@ -36,6 +44,11 @@ void end_collection(CollectionId id) {
   if (id == CollectionId{}) refuse_empty_proxy("destroy() of");
   Pe& pe = current_pe();
   send_to_all<&end_arrives>(pe, {id});
+}
+
+void wait_everywhere(CollectionId id) {
+  if (id == CollectionId{}) refuse_empty_proxy("co_await of");
+  send_to_all<&knock_arrives>(current_pe(), {id});
 }
 
 bool in_running_program() {

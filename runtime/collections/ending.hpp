@@ -16,6 +16,9 @@ class Collection;
 /// Ends a collection on all PEs. Ending it again has no effect.
 void end_collection(CollectionId id);
 
+/// A message to every PE, in the current epoch, that waits there until the collection is known.
+void wait_everywhere(CollectionId id);
+
 /// True on a PE of a run that has not begun to end. Otherwise a destructor need not end anything.
 [[nodiscard]] bool in_running_program();
 

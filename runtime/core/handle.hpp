@@ -5,38 +5,18 @@
 
 #include "runtime/core/ids.hpp"
 
-#include <compare>
 #include <cstddef>
 #include <functional>
 
 namespace tess::detail {
 
-/// The std::hash of each kind of handle derives from it.
-struct HashOfHandle {
-  template <class Handle>
-  [[nodiscard]] std::size_t operator()(const Handle& handle) const {
-    return handle.hash();
-  }
-};
-
-/// What a handle of a whole collection is, its number. `Self` is the class that derives from it.
-template <class Self>
-class WholeHandle {
- public:
-  /// Of no collection: it can only be assigned to.
-  WholeHandle() = default;
-  explicit WholeHandle(CollectionId id) : id_(id) {}
-
-  [[nodiscard]] CollectionId id() const { return id_; }
-  [[nodiscard]] std::size_t hash() const { return std::hash<CollectionId>()(id_); }
-  friend auto operator<=>(const WholeHandle&, const WholeHandle&) = default;
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(id_);
-  }
-
- protected:
-  CollectionId id_{};
-};
+/// A class of handles says so by the member type IsHandle; it has hash(), which makes it a key.
+template <class H>
+concept Handle = requires { typename H::IsHandle; };
 
 }  // namespace tess::detail
+
+template <tess::detail::Handle H>
+struct std::hash<H> {
+  [[nodiscard]] std::size_t operator()(const H& handle) const { return handle.hash(); }
+};

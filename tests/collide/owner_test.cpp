@@ -56,7 +56,7 @@ Task report_to_all(std::int64_t& n) {
   co_await epoch([&] {
     flat = create<Counter<Index2>>(sparse);
     deep = create<Counter<Index3>>(sparse);
-    members = create_group<CountingMember>();
+    members = create<CountingMember>(each_pe);
   });
   co_await epoch([&] {
     flat[{-1, 2}].insert();
@@ -121,7 +121,7 @@ TEST_CASE("pairs within a model count on chares and in one thread alike", "[coll
   machine
       .run([&]() -> Task {
         GroupProxy<CountingMember> members;
-        co_await epoch([&] { members = create_group<CountingMember>(); });
+        co_await epoch([&] { members = create<CountingMember>(each_pe); });
         const Collider collider = make_collider({});
         collider.submit(Objects{owner_of(PeId{0}), ModelId{0}, boxes});
         co_await collider.run({report_to<&CountingMember::receive>(members), {}});

@@ -21,14 +21,14 @@ void array_of_no_chare() {
   tess::create<NoChare>(tess::range(8));
 }
 
-// expect: a group is made by create_group()
+// expect: a group has one member per PE
 void array_of_group() {
   tess::create<Counter>(tess::range(8));
 }
 
 // expect: a group's class derives from tess::Group; create() makes an array
 void group_of_chare() {
-  tess::create_group<Plain>();
+  tess::create<Plain>(tess::each_pe);
 }
 
 // expect: derive publicly from tess::Chare

@@ -52,7 +52,7 @@ struct Inspector : Group<Inspector> {
 };
 
 Task inspect(DistributedMesh mesh, Contents* contents) {
-  const auto inspectors = create_group<Inspector>();
+  const auto inspectors = create<Inspector>(each_pe);
   Future<Contents> all;
   inspectors.broadcast<&Inspector::inspect>(mesh.workers, mesh.n_parts, all.callback());
   *contents = co_await all;

@@ -177,7 +177,7 @@ struct Made {
 
   static tess::Task save(const std::string& folder) {
     Made state;
-    co_await tess::epoch([&] { state.makers = tess::create_group<MakesAtOnce>(); });
+    co_await tess::epoch([&] { state.makers = tess::create<MakesAtOnce>(tess::each_pe); });
     co_await state.step();
     co_await tess::checkpoint(folder, state);
     state.makers.broadcast<&MakesAtOnce::end>();

@@ -59,14 +59,14 @@ void use_as_keys() {
   const auto pages = tess::create<Page>(tess::sparse);
   check_keys(pages["left"], pages["right"]);
   check_keys(tess::create_section(actors, {{0}, {1}}), tess::create_section(actors, {{0}, {1}}));
-  const auto ushers = tess::create_group<Usher>();
-  check_keys(ushers, tess::create_group<Usher>());
+  const auto ushers = tess::create<Usher>(tess::each_pe);
+  check_keys(ushers, tess::create<Usher>(tess::each_pe));
   check_keys(ushers[tess::PeId{1}], ushers[tess::PeId{2}]);
-  check_keys(tess::create_one<Actor>(), tess::create_one<Actor>());
+  check_keys(tess::create<Actor>(tess::one), tess::create<Actor>(tess::one));
   using Speakers = tess::InterfaceArray<Speaker>;
   check_keys(Speakers(actors), Speakers(others));
   check_keys(Speakers(actors)[{1}], Speakers(actors)[{2}]);
-  check_keys(tess::create_process_group<Stage>(), tess::create_process_group<Stage>());
+  check_keys(tess::create<Stage>(tess::each_process), tess::create<Stage>(tess::each_process));
   check_keys(tess::create_read_only(Stage{3}), tess::create_read_only(Stage{3}));
 }
 
@@ -123,7 +123,7 @@ TEST_CASE("an element's proxy is a value: empty, compared, hashed, sent, kept",
     nodes[{0}].send<&Link::pass>(last.callback());
     CHECK(co_await last == 4);
 
-    const auto members = tess::create_group<Greeter>();
+    const auto members = tess::create<Greeter>(tess::each_pe);
     tess::MemberProxy<Greeter> from;
     CHECK(from != members[tess::PeId{1}]);
     from = members[tess::PeId{0}];

@@ -155,7 +155,7 @@ TEST_CASE("a result without a value: futures, targets, reductions", "[runtime][f
     nodes[{6}].send<&Node::tell>(last.callback());
     CHECK(co_await last == 77);
 
-    const auto members = tess::create_group<Adder>();
+    const auto members = tess::create<Adder>(tess::each_pe);
     const tess::Callback<int> all = members.target<&Adder::add>();
     co_await tess::epoch([&] { all(5); });
     for (int pe = 0; pe < tess::n_pes(); ++pe) {

@@ -52,15 +52,15 @@ tess::Task work_and_look(tess::GroupProxy<Probe> probes, std::vector<std::int64_
 TEST_CASE("busy time is the time of a PE in messages, not the time that it waits", "[runtime]") {
   std::vector<std::int64_t> spent;
   CHECK(run("pes=3,latency=1ms,cost=100ns", 1U << 20U, [&]() -> tess::Task {
-          return work_and_look(tess::create_group<Probe>(), spent);
+          return work_and_look(tess::create<Probe>(tess::each_pe), spent);
         }) == 0);
   // In virtual nanoseconds; the machine's cost per message is not counted.
   CHECK(spent == std::vector<std::int64_t>{0, 21'000, 40'000});
 }
 
 tess::Task create_and_count(std::vector<std::size_t>& counts) {
-  const auto probes = tess::create_group<Probe>();
-  const auto others = tess::create_group<Probe>();
+  const auto probes = tess::create<Probe>(tess::each_pe);
+  const auto others = tess::create<Probe>(tess::each_pe);
   for (int round = 0; round < 2; ++round) {
     tess::Future<std::size_t> sum;
     co_await tess::epoch([&] { probes.broadcast<&Probe::count>(sum.callback()); });
@@ -77,7 +77,7 @@ TEST_CASE("each PE counts the arrays and groups that are not destroyed", "[runti
 }
 
 tess::Task fill_up() {
-  const auto probes = tess::create_group<Probe>();
+  const auto probes = tess::create<Probe>(tess::each_pe);
   co_await tess::epoch([&] { probes.broadcast<&Probe::nothing>(); });
   const tess::PeId near{1}, far{2};  // of this process, of the other
   CHECK(tess::has_room(far));
@@ -96,7 +96,7 @@ TEST_CASE("there is room to a process until messages fill its memory, and again 
 }
 
 tess::Task see_epochs(std::vector<tess::EpochId>& here, std::vector<std::uint64_t>& of_pes) {
-  const auto probes = tess::create_group<Probe>();
+  const auto probes = tess::create<Probe>(tess::each_pe);
   tess::Future<std::vector<std::uint64_t>> seen;
   here.push_back(tess::my_epoch());
   co_await tess::epoch([&] {

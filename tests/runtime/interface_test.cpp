@@ -126,7 +126,7 @@ struct Statement {
 tess::Task bank(Statement& found) {
   const auto savings = tess::create<Savings>(tess::range(3));
   const auto debts = tess::create<Debt>(tess::range(2), std::int64_t{100});
-  const auto last = tess::create_one<Debt>(std::int64_t{7});
+  const auto last = tess::create<Debt>(tess::one, std::int64_t{7});
   const auto banks = tess::create<Bank>(tess::range(2));
   const std::vector<Any> all{savings[{0}], debts[{0}], savings[{1}],
                              debts[{1}],   last,       savings[{2}]};
@@ -178,7 +178,7 @@ void check_statement(const Statement& found) {
 
 /// Both calls are ready before one of them runs.
 tess::Task send_with_priorities(std::vector<std::int64_t>& balances) {
-  const auto debt = tess::create_one_on<Debt>(tess::PeId{0}, std::int64_t{50});
+  const auto debt = tess::create<Debt>(tess::one_on(tess::PeId{0}), std::int64_t{50});
   const Any account = debt;
   (void)co_await account.ask<&Account::balance>();
   auto after = account.ask<&Account::balance>();

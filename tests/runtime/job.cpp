@@ -120,7 +120,7 @@ void give_codes(tess::GroupProxy<Crowd> crowd, int first, int last) {
 int job(tess::Setup& setup, int argc, char** argv) {
   const std::string ending = argc > 1 ? argv[1] : "";
   return tess::run(setup, [ending] {
-    const auto crowd = tess::create_group<Crowd>();
+    const auto crowd = tess::create<Crowd>(tess::each_pe);
     if (ending == "codes=3,9") {
       give_codes(crowd, 3, 9);
     } else if (ending == "codes=9,3") {

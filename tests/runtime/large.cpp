@@ -134,13 +134,13 @@ class Station : public tess::Group<Station> {
 };
 
 tess::Task values() {
-  const auto stations = tess::create_group<Station>();
+  const auto stations = tess::create<Station>(tess::each_pe);
   co_await tess::epoch([&] { stations.broadcast<&Station::begin_tour>(); });
   stations.broadcast<&Station::spray>();  // ends by exit() while others are on their way
 }
 
 tess::Task memory() {
-  const auto stations = tess::create_group<Station>();
+  const auto stations = tess::create<Station>(tess::each_pe);
   tess::Future<int> done;
   stations[tess::PeId{1}].send<&Station::bounce>(std::vector<std::byte>(MiB), done.callback());
   (void)co_await done;
@@ -148,7 +148,7 @@ tess::Task memory() {
 
 /// From the first PE to the last; then each looks how far its memory has grown.
 tess::Task flood(Flood flood, std::size_t most_sender, std::size_t most_receiver) {
-  const auto stations = tess::create_group<Station>();
+  const auto stations = tess::create<Station>(tess::each_pe);
   const tess::PeId last{tess::n_pes() - 1};
   co_await tess::epoch([&] { stations.broadcast<&Station::watch>(); });
   co_await tess::epoch([&] { stations[tess::PeId{0}].send<&Station::pour>(flood); });

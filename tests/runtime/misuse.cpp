@@ -399,7 +399,7 @@ tess::Task use_after_end() {
 }
 
 tess::Task use_member_after_end() {
-  const auto members = tess::create_group<Member>();
+  const auto members = tess::create<Member>(tess::each_pe);
   co_await tess::epoch([&] { members.destroy(); });
   members.local().nothing();
 }
@@ -550,8 +550,8 @@ tess::Task create_in_epoch() {
 }
 
 const std::map<std::string, std::function<void()>> misuses{
-    {"member_99", [] { tess::create_group<Member>()[PeId{99}].send<&Member::nothing>(); }},
-    {"member_-1", [] { tess::create_group<Member>()[PeId{-1}].send<&Member::nothing>(); }},
+    {"member_99", [] { tess::create<Member>(tess::each_pe)[PeId{99}].send<&Member::nothing>(); }},
+    {"member_-1", [] { tess::create<Member>(tess::each_pe)[PeId{-1}].send<&Member::nothing>(); }},
     {"insert_on_77", [] { blocks()[{3}].insert_on(PeId{77}); }},
     {"map_too_far", [] { tess::create<Block>(tess::mapped(tess::range(4), ToItsNumber{})); }},
     {"migrate_to_-3", [] { blocks()[{0}].migrate_to(PeId{-3}); }},

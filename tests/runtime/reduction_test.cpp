@@ -96,7 +96,7 @@ TEST_CASE("reduce() broadcasts and gives the future of the result, for now or fo
           "[runtime][reduction]") {
   tests::over_seeds(20, tests::two_processes, []() -> tess::Task {
     const auto nodes = tess::create<Giver>(tess::range(4));
-    const auto members = tess::create_group<Greeter>();
+    const auto members = tess::create<Greeter>(tess::each_pe);
     const int merged = co_await nodes.reduce<&Giver::add>(1);
     CHECK(merged == 100);
     co_await nodes.reduce<&Giver::there>();

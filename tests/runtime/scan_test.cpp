@@ -197,7 +197,7 @@ class Member : public tess::Group<Member> {
 };
 
 tess::Task scan_group(std::vector<std::pair<tess::Index1, int>>& found) {
-  const auto members = tess::create_group<Member>();
+  const auto members = tess::create<Member>(tess::each_pe);
   found = co_await members.reduce<&Member::give>();
 }
 

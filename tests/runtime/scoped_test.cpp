@@ -53,7 +53,7 @@ tests::Ending run(const std::string& machine, Main main) {
 
 tess::Task one_of_each() {
   const Cogs parts = make(7);
-  const tess::Scoped members(tess::create_group<Crew>());
+  const tess::Scoped members(tess::create<Crew>(tess::each_pe));
   tess::Future<void> done;
   // A message takes the handle.
   members[tess::PeId{2}].send<&Crew::take>(parts, done.callback());

@@ -84,7 +84,7 @@ using Costs = std::vector<std::uint64_t>;
 /// The messages of ten multicasts before the members move, and after.
 tess::Task count_messages(Costs& costs) {
   const auto riders = tess::create<Rider>(tess::range(64));
-  const auto counters = tess::create_group<CallCounter>();
+  const auto counters = tess::create<CallCounter>(tess::each_pe);
   const auto all = tess::create_section_if(riders, [](tess::Index1) { return true; });
   for (int phase = 0; phase < 2; ++phase) {
     if (phase == 1) co_await tess::epoch([&] { riders.broadcast<&Rider::ride_on>(); });

@@ -44,7 +44,7 @@ class Desk : public tess::Chare<Desk> {
 
 /// All calls are ready before the first runs: they are sent within one entry method.
 tess::Task ask_with_priorities(std::vector<int>& order, int& late) {
-  const auto desk = tess::create_one_on<Desk>(tess::PeId{0});
+  const auto desk = tess::create<Desk>(tess::one_on(tess::PeId{0}));
   co_await tess::epoch([] {});
   (void)co_await desk.ask<&Desk::order>();
   auto third = desk.with(tess::Priority{3}).ask<&Desk::note>(3);
@@ -89,13 +89,13 @@ class SingleAdder : public tess::Group<SingleAdder> {
 tess::Task use_single(int& count, int& first_pe, int& last_pe, std::size_t& n_left) {
   const tess::PeId last{tess::n_pes() - 1};
   tess::ChareProxy<Single> anywhere;
-  co_await tess::epoch([&] { anywhere = tess::create_one<Single>(1); });
-  const auto single = tess::create_one_on<Single>(last, 100);
+  co_await tess::epoch([&] { anywhere = tess::create<Single>(tess::one, 1); });
+  const auto single = tess::create<Single>(tess::one_on(last), 100);
   tess::Future<std::pair<int, int>> first, second;
   single.send<&Single::tell>(first.callback());
   const auto before = co_await first;
   first_pe = before.second;
-  const auto senders = tess::create_group<SingleAdder>();
+  const auto senders = tess::create<SingleAdder>(tess::each_pe);
   co_await tess::epoch([&] {
     senders.broadcast<&SingleAdder::add>(single);
     single.migrate_to(tess::PeId{0});
@@ -130,8 +130,8 @@ void check_single(int n_pes, const auto& run_on_machine, bool moves_by_force) {
 TEST_CASE("a chare without a default constructor, alone and in a sparse array",
           "[runtime][single]") {
   tests::over_seeds(20, tests::two_processes, []() -> tess::Task {
-    const auto anna = tess::create_one<Named>(std::string("Anna"));
-    const auto otto = tess::create_one_on<Named>(tess::PeId{3}, std::string("Otto"));
+    const auto anna = tess::create<Named>(tess::one, std::string("Anna"));
+    const auto otto = tess::create<Named>(tess::one_on(tess::PeId{3}), std::string("Otto"));
     const auto others = tess::create<Named>(tess::sparse);
     others[{7}].insert(std::string("Ida"));
     const std::string a = co_await anna.ask<&Named::name>();

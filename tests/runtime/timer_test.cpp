@@ -158,7 +158,7 @@ TEST_CASE("the run does not end before what the last call of a periodic timer se
   // run.
   for (std::int64_t period_ns = 1000; period_ns < 60'000; period_ns += 100, ++n_runs) {
     const tests::Ending ending = simulate([&] {
-      tess::create_group<LastTick>()[tess::PeId{3}].send<&LastTick::begin>(period_ns, 8);
+      tess::create<LastTick>(tess::each_pe)[tess::PeId{3}].send<&LastTick::begin>(period_ns, 8);
     });
     CHECK(ending.exit_code == 0);
     INFO("a period of " << period_ns << " ns");
@@ -174,7 +174,7 @@ TEST_CASE("periodic timers go on if the run that seemed to end does not", "[runt
   for (std::int64_t period_ns = 1000; period_ns < 10'000; period_ns += 100) {
     LastTick::n_sent = LastTick::n_ticks = LastTick::n_ticks_in_the_middle = 0;
     const tests::Ending ending = simulate([&] {
-      const auto member = tess::create_group<LastTick>()[tess::PeId{3}];
+      const auto member = tess::create<LastTick>(tess::each_pe)[tess::PeId{3}];
       member.send<&LastTick::begin>(period_ns, 40);
       member.send<&LastTick::tick>();
     });

@@ -1,4 +1,4 @@
-// The sample of runtime/priority.hpp, compiled and run. tests/samples/check.py compares the text.
+// The sample of runtime/sends.hpp, compiled and run. tests/samples/check.py compares the text.
 #include "runtime/machine/threads.hpp"
 #include "runtime/runtime.hpp"
 #include "tests/support/catch.hpp"
@@ -30,7 +30,7 @@ class Searcher : public tess::Chare<Searcher> {
 
 }  // namespace
 
-TEST_CASE("the sample of runtime/priority.hpp searches the shallowest state first",
+TEST_CASE("the sample of runtime/sends.hpp searches the shallowest state first",
           "[runtime][sample]") {
   for (const bool ends : {false, true}) {
     searched.clear();

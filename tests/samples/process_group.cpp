@@ -52,7 +52,7 @@ tess::Task use_caches(double& result, int& n_processes) {
   n_processes = tess::machine().n_processes();
   const tess::ProcessId process{n_processes - 1};
   co_await tess::epoch([&] {
-    caches = tess::create_process_group<Cache>();
+    caches = tess::create<Cache>(tess::each_process);
     table = tess::create_read_only(Table{{0, 1, 4, 9}});
   });
   co_await tess::epoch([&] {
@@ -61,7 +61,7 @@ tess::Task use_caches(double& result, int& n_processes) {
     caches.broadcast<&Cache::put>(5, 2.5);
     caches.broadcast<&Cache::put>(3, 0.5);
     caches.broadcast<&Cache::put>(4, 1.5);
-    tess::create_group<TableReader>().broadcast<&TableReader::read>(table, caches);
+    tess::create<TableReader>(tess::each_pe).broadcast<&TableReader::read>(table, caches);
   });
   const double value = caches.read([](const Cache& cache) { return cache.get(3); });
   result = value;

@@ -100,7 +100,7 @@ tess::Task measure_dense(const Bench& bench, std::int32_t n_elements, Samples& s
 
 tess::Task measure_sparse(const Bench& bench, std::int32_t n_elements, Samples& samples) {
   const SparseVoters voters = tess::create<Voter<tess::Index3>>(tess::sparse);
-  const auto registrar = tess::create_group<Registrar>();
+  const auto registrar = tess::create<Registrar>(tess::each_pe);
   const auto fill = [&] { registrar.broadcast<&Registrar::fill>(voters, n_elements); };
   co_await tess::epoch(fill);
   const auto begin = [voters](Rounds rounds) {

@@ -95,7 +95,7 @@ struct CreationVariant {
 };
 
 tess::Task measure_creation(const Bench& bench, CreationVariant& variant, Samples& plain) {
-  const CreationRun run{bench.size(1'000'000, 2000), tess::create_group<Toucher>()};
+  const CreationRun run{bench.size(1'000'000, 2000), tess::create<Toucher>(tess::each_pe)};
   for (std::int32_t turn = 0; turn <= bench.repeat(); ++turn) {
     const auto cells = tess::create<Cell>(tess::sparse);
     double before = 0, after = 0, creation = 0, message = 0;

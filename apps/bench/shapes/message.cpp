@@ -175,7 +175,7 @@ struct MessageSamples {
 
 tess::Task measure_message(const Bench& bench, MessageSamples& samples) {
   const std::int32_t n = bench.size(1000, 50);
-  const auto referee = tess::create_group<Referee>();
+  const auto referee = tess::create<Referee>(tess::each_pe);
   const MessageRun<Sent::plain> plain(n, referee);
   const MessageRun<Sent::prioritised> prioritised(n, referee);
   const MessageRun<Sent::mixed> mixed(n, referee);

@@ -151,7 +151,7 @@ tess::Task ping_cores(tess::GroupProxy<CorePlayer> group, std::size_t n_bytes,
 tess::Task one_way_turn(const Bench& bench, std::int32_t turn, OneWay& all) {
   const std::int32_t n_pes = tess::n_pes();
   const auto players = tess::create<Player>(tess::range(n_pes), n_pes);
-  const auto cores = tess::create_group<CorePlayer>();
+  const auto cores = tess::create<CorePlayer>(tess::each_pe);
   double nanoseconds = 0;
   for (std::size_t i = 0; i < sizes.size(); ++i) {
     if (bench.has(Needs::two_cores)) {

@@ -41,7 +41,7 @@ class Particles final : public Stepped {
                                  : tess::BalancerProxy();
   }
   tess::Task begin() override {
-    co_await tess::epoch([this] { tess::create_group<Source>(stations_, regions_); });
+    co_await tess::epoch([this] { tess::create<Source>(tess::each_pe, stations_, regions_); });
   }
   tess::Task step(std::int32_t iteration) override {
     co_await tess::epoch([&] { regions_.broadcast<&Region::step>(iteration); });

@@ -26,7 +26,7 @@ tess::balance::Strategy noting(const tess::BalanceOptions& options,
 
 tess::Task run(const Experiment& experiment, Outcome& outcome) {
   tess::GroupProxy<Station> stations;
-  co_await tess::epoch([&] { stations = tess::create_group<Station>(experiment.plan); });
+  co_await tess::epoch([&] { stations = tess::create<Station>(tess::each_pe, experiment.plan); });
   co_await workload_of(experiment.plan.problem).kind->run(experiment, stations, outcome);
   outcome.records = co_await stations.reduce<&Station::give_record>();
 }

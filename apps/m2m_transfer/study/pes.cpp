@@ -36,7 +36,7 @@ int run_once(const Request& request, const RuntimeOptions& options, const Simula
     Problem problem = co_await load(request);
     problem.repeat = 1;       // each run places the meshes again
     problem.collects = true;  // the time of it is a column
-    co_await measure(problem, create_group<Gauge>(), progress);
+    co_await measure(problem, create<Gauge>(each_pe), progress);
     const TransferReport& report = problem.reports.front();
     row = {report.pes, report.seconds, report.tally, report.result_hash};
   });

@@ -96,7 +96,7 @@ void check_memory(const Scene& scene, int n_processes) {
 tess::Task simulate(std::shared_ptr<Stage> stage, RunResult& result, RunOptions options) {
   const Scene& scene = stage->scene;
   const StageHandle handle{stage};
-  const auto stations = tess::create_group<Station>();
+  const auto stations = tess::create<Station>(tess::each_pe);
   const auto blocks = tess::create<Block>(tess::sparse);
   const Shown shown{options.progress};
   const auto hand_out = [&] {

@@ -485,10 +485,11 @@ GroupProxy<Balancer> start(CollectionId array, const BalanceOptions& options, St
   const DistributedStrategy distributed =
       users ? DistributedStrategy::none : distributed_strategy(options.strategy);
   GroupProxy<Exchange> exchange;
-  if (distributed != DistributedStrategy::none) exchange = create_group<Exchange>();
-  const GroupProxy<Balancer> group = create_group<Balancer>(
-      Balancer::Plan{array, pe.id(), options.when, options.period.count(), passes, options.speeds,
-                     options.memory_limit_bytes, distributed, exchange, options.indices});
+  if (distributed != DistributedStrategy::none) exchange = create<Exchange>(each_pe);
+  const GroupProxy<Balancer> group =
+      create<Balancer>(each_pe, Balancer::Plan{array, pe.id(), options.when, options.period.count(),
+                                               passes, options.speeds, options.memory_limit_bytes,
+                                               distributed, exchange, options.indices});
   group.local().coordinate(std::make_unique<Coordinator>(options, std::move(users)));
   return group;
 }

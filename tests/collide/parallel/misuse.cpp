@@ -28,7 +28,7 @@ class Client : public Group<Client> {
 Task misuse(const std::string& where, double slack) {
   Collider collider;
   co_await epoch([&] { collider = make_collider({.slack = slack}); });
-  const auto clients = create_group<Client>();
+  const auto clients = create<Client>(each_pe);
   co_await epoch([&] { clients.broadcast<&Client::submit>(collider); });
   const Report report{report_to<&Client::receive>(clients), {}};
   Task first = collider.run(report);

@@ -183,7 +183,7 @@ Task misuse(std::string name, TransferKind kind) {
   }
   if (name == "apply_in_received") {
     Again::coupling = &coupling;
-    const auto again = create_group<Again>();
+    const auto again = create<Again>(each_pe);
     co_await epoch([&] { target.broadcast<&Patch::go_on>(again); });
   }
   if (name == "apply_in_last") {

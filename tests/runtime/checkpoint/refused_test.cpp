@@ -70,7 +70,7 @@ using Prepare = void (*)(const State&);
 tess::Task try_to_save(std::string folder, Prepare prepare, std::string& error) {
   State state;
   state.cells = tess::create<Cell>(tess::range(6));
-  state.tables = tess::create_group<Table>();
+  state.tables = tess::create<Table>(tess::each_pe);
   prepare(state);
   try {
     co_await tess::checkpoint(folder, state);
@@ -243,7 +243,7 @@ struct Restarting {
   static tess::Task save(const std::string& folder) {
     State state;
     state.cells = tess::create<Cell>(tess::range(6));
-    state.tables = tess::create_group<Table>();
+    state.tables = tess::create<Table>(tess::each_pe);
     co_await tess::checkpoint(folder, state);
   }
   static tess::Task restart(const std::string& folder, int& sum) {

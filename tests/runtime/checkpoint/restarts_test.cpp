@@ -150,9 +150,9 @@ struct Desks {
 
   static Desks make() {
     Desks desks;
-    for (std::size_t i = 0; i < n_anywhere; ++i) desks.all.push_back(tess::create_one<Desk>());
+    for (std::size_t i = 0; i < n_anywhere; ++i) desks.all.push_back(tess::create<Desk>(tess::one));
     const std::int32_t last = tess::n_pes() - 1;
-    desks.all.push_back(tess::create_one_on<Desk>(tess::PeId{last}));
+    desks.all.push_back(tess::create<Desk>(tess::one_on(tess::PeId{last})));
     return desks;
   }
   tess::Task where(std::vector<int>& places) const {
@@ -208,7 +208,7 @@ TEST_CASE("single chares are where they were after a restart, or spread as in a 
       CAPTURE(n_pes);
       std::vector<int> anew = places_on(n_pes, seed, &Desks::look);
       CHECK(std::set<int>(anew.begin(), anew.end()).size() > 2);
-      anew.back() = 3 % n_pes;  // of create_one_on()
+      anew.back() = 3 % n_pes;  // of one_on()
       CHECK(places_on(n_pes, seed + 200, restart) == anew);
     }
   }

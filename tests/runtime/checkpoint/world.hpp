@@ -155,8 +155,8 @@ inline tess::Task make(State& state) {
     state.ended = tess::create<Word>(tess::sparse);
     state.atoms = tess::create<Atom>(tess::range(Atom::width, Atom::height));
     state.words = tess::create<Word>(tess::sparse);
-    state.tallies = tess::create_group<Tally>();
-    state.census = tess::create_one<Census>();
+    state.tallies = tess::create<Tally>(tess::each_pe);
+    state.census = tess::create<Census>(tess::one);
     state.row = tess::create_section(state.atoms, {{3, 1}, {0, 1}, {4, 1}, {2, 1}});
     state.gone = tess::create_section(state.atoms, {{0, 0}});
     state.ended.destroy();

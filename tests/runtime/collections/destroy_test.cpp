@@ -50,7 +50,7 @@ class Member : public tess::Group<Member> {
 /// One round of making, using and ending one of each.
 tess::Task use_and_end(int round) {
   const auto workers = tess::create<Worker>(round % 2 == 0 ? tess::range(16) : tess::sparse);
-  const auto members = tess::create_group<Member>();
+  const auto members = tess::create<Member>(tess::each_pe);
   if (round % 3 == 0)
     tess::start_balancing(workers, {.strategy = round % 2 == 0 ? "greedy" : "diffusion",
                                     .when = tess::BalanceWhen::periodic,
@@ -240,7 +240,7 @@ tess::Task end_from_within() {
   const auto array = tess::create<Last>(tess::range(5));
   co_await tess::epoch([&] { array[{3}].send<&Last::end>(); });
   CHECK(n_alive == 0);
-  const auto group = tess::create_group<LastMember>();
+  const auto group = tess::create<LastMember>(tess::each_pe);
   co_await tess::epoch([&] { group[tess::PeId{1}].send<&LastMember::end>(); });
   CHECK(n_alive == 0);
   CHECK(group.local_or_null() == nullptr);

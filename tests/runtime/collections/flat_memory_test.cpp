@@ -25,7 +25,7 @@ class Member : public tess::Group<Member> {
 
 tess::Task use_both(std::int64_t& total) {
   const tess::Scoped blocks(tess::create<Block>(tess::range(8)));
-  const tess::Scoped members(tess::create_group<Member>());
+  const tess::Scoped members(tess::create<Member>(tess::each_pe));
   tess::Future<void> passed;
   co_await tess::epoch([&] { members.broadcast<&Member::pass>(blocks, passed.callback()); });
   co_await passed;

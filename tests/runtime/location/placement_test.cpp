@@ -79,7 +79,7 @@ class Demander : public tess::Group<Demander<Index>> {
 template <class Index>
 tess::Task count_from_everywhere(const std::vector<Index>& indices, Counts& found) {
   const auto tallies = tess::create<Tally<Index>>(tess::sparse);
-  const auto demanders = tess::create_group<Demander<Index>>();
+  const auto demanders = tess::create<Demander<Index>>(tess::each_pe);
   co_await tess::epoch(
       [&] { demanders.template broadcast<&Demander<Index>::send>(tallies, indices); });
   found = co_await tallies.template reduce<&Tally<Index>::report>();

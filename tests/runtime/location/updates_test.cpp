@@ -46,7 +46,7 @@ class Sender : public tess::Group<Sender> {
 
 tess::Task chase(std::int64_t& n_forwards, std::int64_t& n_touches) {
   const auto array = tess::create<Heavy>(tess::range(1));  // its home is PE 0
-  const auto senders = tess::create_group<Sender>();
+  const auto senders = tess::create<Sender>(tess::each_pe);
   co_await tess::epoch([&] { array[{0}].migrate_to(tess::PeId{1}); });
   co_await tess::epoch([&] { array[{0}].migrate_to(tess::PeId{2}); });
   tess::Future<std::int64_t> before, after, touches;

@@ -33,7 +33,7 @@ class Chain : public tess::Group<Chain> {
 
 tess::Task measure_epoch() {
   tess::GroupProxy<Chain> chains;
-  co_await tess::epoch([&] { chains = tess::create_group<Chain>(); });
+  co_await tess::epoch([&] { chains = tess::create<Chain>(tess::each_pe); });
   chains.broadcast<&Chain::link>();
   co_await tess::epoch([&] { chains.broadcast<&Chain::nothing>(); });
   at_end = n_run[0];

@@ -197,8 +197,9 @@ std::int64_t round_trip(const std::string& options) {
   tess::Setup setup;
   setup.machine = tess::make_simulated_machine(tess::parse_simulated("cost=100ns," + options));
   Pair::last = {};
-  REQUIRE(tess::run(setup,
-                    [] { tess::create_group<Pair>()[tess::PeId{0}].send<&Pair::serve>(3); }) == 0);
+  REQUIRE(tess::run(setup, [] {
+            tess::create<Pair>(tess::each_pe)[tess::PeId{0}].send<&Pair::serve>(3);
+          }) == 0);
   return Pair::last.count();
 }
 

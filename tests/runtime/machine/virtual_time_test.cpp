@@ -141,7 +141,7 @@ tess::Task walk_in_epoch(Walk& walk) {
   co_await tess::epoch(body);
   walk.in_epoch = tess::now();
   tess::Future<std::vector<std::uint64_t>> done;
-  tess::create_group<Counter>().broadcast<&Counter::count>(done.callback());
+  tess::create<Counter>(tess::each_pe).broadcast<&Counter::count>(done.callback());
   walk.messages = co_await done;
 }
 
@@ -171,7 +171,7 @@ TEST_CASE("the busy time of --stats is the cost of each message and the work tha
     std::vector<std::string> lines;
     REQUIRE(simulate(
                 tess::text("pes=", n_pes, ",", processes),
-                [] { tess::create_group<Clerk>().broadcast<&Clerk::begin>(n_files); },
+                [] { tess::create<Clerk>(tess::each_pe).broadcast<&Clerk::begin>(n_files); },
                 &lines) == 0);
     REQUIRE(lines.size() == n_pes);
     for (const std::string& line : lines) {
@@ -196,7 +196,7 @@ TEST_CASE("both ends copy the bytes of packed messages, and none of a large vect
   for (const std::size_t n_bytes : {std::size_t{1000}, std::size_t{4000}, std::size_t{1'000'000}}) {
     CAPTURE(n_bytes);
     REQUIRE(simulate("pes=2,per-process=1,bandwidth=1GB/s,process-copy=1GB/s", [n_bytes] {
-              tess::create_group<Parcels>()[tess::PeId{1}].send<&Parcels::take>(
+              tess::create<Parcels>(tess::each_pe)[tess::PeId{1}].send<&Parcels::take>(
                   Shipped{tess::now(), std::vector<char>(n_bytes)});
             }) == 0);
     const auto bytes = static_cast<std::int64_t>(n_bytes);

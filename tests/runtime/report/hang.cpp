@@ -66,7 +66,7 @@ int job(int argc, char** argv) {
   const std::string kind = argc > 1 ? argv[1] : "";
   if (kind == "lost") setup.options.fault = {tess::MessageFault::Kind::lost, 3};
   return tess::run(setup, [kind] {
-    const auto workers = tess::create_group<Worker>();
+    const auto workers = tess::create<Worker>(tess::each_pe);
     if (kind == "ends") return workers.broadcast<&Worker::travel_far>(1000);
     tess::after(std::chrono::hours(1), [] {});
     const tess::PeId first{0}, last{tess::current_pe().n_pes() - 1};

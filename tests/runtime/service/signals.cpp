@@ -52,7 +52,7 @@ int job(int argc, char** argv) {
   std::signal(SIGINT, SIG_DFL);
   if (kind == "ignore") std::signal(SIGTERM, SIG_IGN);
   return tess::run(setup, [kind] {
-    const auto waiters = tess::create_group<Waiter>();
+    const auto waiters = tess::create<Waiter>(tess::each_pe);
     tess::after(std::chrono::hours(1), [] {});
     if (kind == "busy") {
       waiters.broadcast<&Waiter::travel>();

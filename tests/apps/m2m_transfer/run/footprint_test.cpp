@@ -28,8 +28,8 @@ class Chatter : public Group<Chatter> {
 };
 
 Task compare(Footprint& before, Footprint& after) {
-  const auto gauge = create_group<Gauge>();
-  const auto chatter = create_group<Chatter>();
+  const auto gauge = create<Gauge>(each_pe);
+  const auto chatter = create<Chatter>(each_pe);
   Future<Footprint> first, second;
   gauge.broadcast<&Gauge::read>(first.callback());
   before = co_await first;

@@ -40,8 +40,8 @@ void create_all(State& state, int n_elements) {
   state.elements = create<SectionMember>(range(n_elements));
   state.on_demand = create<OnDemand>(sparse);
   state.on_demand["first"].insert();
-  state.single = create_one<Single>();
-  state.per_pe = create_group<PerPe>();
+  state.single = create<Single>(one);
+  state.per_pe = create<PerPe>(each_pe);
   for (int index = 0; index < n_elements; index += 2) state.listed.push_back({index});
   state.section = create_section(state.elements, state.listed);
   state.n_indices = n_elements;
@@ -66,7 +66,7 @@ Task run_phase(State& state) {
   ProcessGroupProxy<PerProcess> per_process;
   ReadOnly<Table> table;
   co_await epoch([&] {
-    per_process = create_process_group<PerProcess>();
+    per_process = create<PerProcess>(each_process);
     Table made;
     for (std::uint64_t i = 0; i < 10; ++i) made.each.push_back(mix(i));
     table = create_read_only(std::move(made));

@@ -89,7 +89,7 @@ class Speaker : public Group<Speaker> {
 
 Task drive(Range first, int n_each) {
   const auto array = tess::create<Listener>(first, true);
-  const auto speakers = create_group<Speaker>();
+  const auto speakers = create<Speaker>(each_pe);
   co_await epoch([&] { speakers.broadcast<&Speaker::speak>(array, n_each); });
   array.broadcast<&Listener::tell>();
 }

@@ -194,7 +194,7 @@ void driven_rounds(Case& test) {
   driven = &here;
   test.run_clean([]() -> Task {
     const auto cells = tess::create<DrivenCell>(range(driven->n_first));
-    const auto judges = create_group<RoundJudge>();
+    const auto judges = create<RoundJudge>(each_pe);
     const auto drivers = tess::create<CellDriver>(range(driven->n_first));
     co_await epoch([&] {
       for (int i = 0; i < static_cast<int>(driven->lives.size()); ++i)

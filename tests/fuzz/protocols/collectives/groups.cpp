@@ -77,8 +77,8 @@ class Sender : public Group<Sender> {
 };
 
 void Member::make_second() {
-  const auto senders = create_group<Sender>();
-  const auto second = create_group<Second>();
+  const auto senders = create<Sender>(each_pe);
+  const auto second = create<Second>(each_pe);
   senders.broadcast<&Sender::send>(second);
 }
 
@@ -91,7 +91,7 @@ void groups(Case& test) {
   const int n = test.machine.pes, n_hops = test.draw(0, 30);
   const PeId maker{test.draw(0, n - 1)};
   test.run_clean([&] {
-    const auto group = create_group<Member>(std::string("word "));
+    const auto group = create<Member>(each_pe, std::string("word "));
     group.broadcast<&Member::play>(0);
     group.broadcast<&Member::call>(PeId{0}, n_hops);
     group[maker].send<&Member::make_second>();

@@ -269,7 +269,7 @@ Task Asker::ask_section(Random& random) {
 
 Task ask_everywhere() {
   const auto askers = tess::create<Asker>(range(inner_draws->n_askers));
-  const auto members = create_group<AskingMember>();
+  const auto members = create<AskingMember>(each_pe);
   co_await epoch([&] {
     askers.broadcast<&Asker::work>(AskerWork{inner_draws->n_steps, members});
     members.broadcast<&AskingMember::work>(askers, inner_draws->n_steps);

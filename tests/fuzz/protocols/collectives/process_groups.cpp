@@ -53,12 +53,12 @@ Task add_everywhere(std::int64_t expected) {
   ProcessGroupProxy<Total> totals;
   ReadOnly<Table> table;
   co_await epoch([&] {
-    totals = create_process_group<Total>();
+    totals = create<Total>(each_process);
     Table made;
     for (int i = 0; i < process_draws->n_each; ++i) made.each.push_back(i);
     table = create_read_only(std::move(made));
   });
-  const auto adders = create_group<Adder>();
+  const auto adders = create<Adder>(each_pe);
   co_await epoch([&] {
     adders.broadcast<&Adder::add_some>(totals, table);
     totals.broadcast<&Total::add>(1);

@@ -232,7 +232,7 @@ void rounds(Case& test) {
   here.late_chance = test.draw(0, 2) * 0.4;
   here.given.resize(static_cast<std::size_t>(here.n_rounds));
   test.run_clean([&] {
-    here.judge = create_group<Judge>();
+    here.judge = create<Judge>(each_pe);
     const auto elements = tess::create<RoundElement>(range(here.n_first), true);
     here.judge[PeId{0}].send<&Judge::start>(elements);
   });

@@ -194,7 +194,7 @@ void SectionMember::give(const Call& call) {
 
 void begin_all(int n_first, int n_indices) {
   const auto elements = tess::create<SectionMember>(range(n_first));
-  section_record->callers = create_group<Caller>();
+  section_record->callers = create<Caller>(each_pe);
   for (std::size_t s = 0; s < section_record->sections.size(); ++s) {
     const auto number = static_cast<std::int32_t>(s);
     section_record->callers[PeId{number % tess::n_pes()}].send<&Caller::begin>(elements, number);

@@ -76,7 +76,7 @@ class ResultTaker : public Group<ResultTaker> {
 
 Task run_turns(int n_turns) {
   const auto elements = tess::create<EndingMember>(range(section_end_record->n_elements));
-  const auto takers = create_group<ResultTaker>();
+  const auto takers = create<ResultTaker>(each_pe);
   std::vector<Index1> all;
   for (int x = 0; x < section_end_record->n_elements; ++x) all.push_back({x});
   for (int turn = 0; turn < n_turns; ++turn) {

@@ -66,7 +66,7 @@ class Watcher : public Group<Watcher> {
 
 Task drive(int n_rounds) {
   const auto array = tess::create<Mover>(range(places->n_elements));
-  const auto watchers = create_group<Watcher>();
+  const auto watchers = create<Watcher>(each_pe);
   for (int round = 0; round < n_rounds; ++round) {
     co_await epoch([&] { array.broadcast<&Mover::go>(round); });
     co_await epoch([&] { watchers.broadcast<&Watcher::look>(array); });

@@ -167,7 +167,7 @@ class Opener : public Group<Opener> {
 
 Task drive(TreeNode root) {
   const auto array = tess::create<TreeElement>(range(epoch_record->n_elements));
-  const auto openers = create_group<Opener>();
+  const auto openers = create<Opener>(each_pe);
   const int all = epoch_record->open(-1);
   co_await epoch([] {});
   co_await epoch([&] {

@@ -219,7 +219,7 @@ void balance_rounds(Case& test) {
   if (test.draw(0, 3) == 0) options.when = BalanceWhen::automatic;
   const bool late = test.draw(0, 3) == 0;  // balancing starts when some already wait
   test.run_clean([&] {
-    collector_of_case = create_group<Collector>();
+    collector_of_case = create<Collector>(each_pe);
     const auto lives = create<Life>(sparse);
     if (!late) start_balancing(lives, options);
     for (int i = 0; i < n; ++i) lives[{i, 1}].insert_on(PeId{i % tess::n_pes()}, RoundId{0});

@@ -39,7 +39,7 @@ Task construct_all(int n, int n_rounds) {
   construction->created = created.callback();
   construction->members = members.callback();
   const auto elements = tess::create<NewElement>(range(n));
-  create_group<NewMember>();
+  create<NewMember>(each_pe);
   BalanceOptions options;
   options.strategy = "rotate";
   if (construction->syncs) start_balancing(elements, options);

@@ -155,7 +155,7 @@ class Agent : public Group<Agent<Mode>> {
 template <DeadLetters Mode>
 Task drive(Orders orders) {
   const auto array = tess::create<Target<Mode>>(sparse);
-  const auto agents = create_group<Agent<Mode>>();
+  const auto agents = create<Agent<Mode>>(each_pe);
   agents.template broadcast<&Agent<Mode>::act>(array, orders);
   const auto fill_up = [&] {
     agents.template broadcast<&Agent<Mode>::fill_up>(array, orders.n_indices);

@@ -408,7 +408,7 @@ void run_schedule(Case& test, const Schedule& here) {
   const PeId seat{test.draw(0, test.machine.pes - 1)};
   const Result result = test.run([seat]() -> Task {
     const auto cells = tess::create<Cell>(sparse);
-    const auto judges = create_group<InsertingJudge>();
+    const auto judges = create<InsertingJudge>(each_pe);
     co_await epoch([&] {
       cells[0].insert(0);
       cells[0].send<&Cell::report_to>(judges[seat].target<&InsertingJudge::hear>());

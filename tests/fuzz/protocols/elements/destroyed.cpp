@@ -294,7 +294,7 @@ Task all_lives(GroupProxy<Operator> operators, int n_lives, std::uint64_t seed) 
 }
 
 Task live_and_end_often(int n_lives, std::uint64_t seed) {
-  const auto operators = create_group<Operator>();
+  const auto operators = create<Operator>(each_pe);
   co_await epoch([&] { const Task lives = all_lives(operators, n_lives, seed); });
   constexpr int most_looks = 5000;
   int n_looks = 0;

@@ -57,7 +57,7 @@ class Ender : public Group<Ender> {
         random.chance(0.5)
             ? create<Transient>(range(1 + static_cast<std::int32_t>(random.below(50))))
             : create<Transient>(sparse),
-        create_group<TransientMember>()};
+        create<TransientMember>(each_pe)};
     group().broadcast<&Ender::end_some>(made, pe(), random());
     if (random.chance(0.3)) made.end();
   }
@@ -82,7 +82,7 @@ class Ender : public Group<Ender> {
 };
 
 Task create_and_end(std::uint64_t of_case, int n_rounds) {
-  const auto enders = create_group<Ender>();
+  const auto enders = create<Ender>(each_pe);
   for (int round = 0; round < n_rounds; ++round) {
     const std::uint64_t seed = mix(of_case) + static_cast<std::uint64_t>(round);
     co_await epoch([&] { enders.broadcast<&Ender::create_some>(seed); });

@@ -69,7 +69,7 @@ void visits_all_pes(Case& test) {
   here.delivered.assign(static_cast<std::size_t>(test.machine.pes * n * n_rounds), 0);
   test.run_clean([&] {
     const auto array = tess::create<Visitor>(range(n, 1, 2));
-    const auto senders = create_group<VisitorSender>();
+    const auto senders = create<VisitorSender>(each_pe);
     for (int i = 0; i < n; ++i) array[{i, 0, 1}].send<&Visitor::visit>(0);
     senders.broadcast<&VisitorSender::send_round>(Sending{array, n, n_rounds}, 0);
   });

@@ -206,7 +206,7 @@ class LeaverCount : public Group<LeaverCount> {
 
 Task leave_and_insert() {
   const auto elements = tess::create<WaitingElement>(range(wait_draws->n_elements()));
-  const auto counts = create_group<LeaverCount>();
+  const auto counts = create<LeaverCount>(each_pe);
   for (int round = 0; round < wait_draws->n_rounds; ++round) {
     Random random = wait_draws->draws(round, -1);
     Turn turn{round, draw(random, 4), draw(random, 4), {}, {}};

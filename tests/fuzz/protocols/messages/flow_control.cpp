@@ -81,7 +81,7 @@ Task produce_twice(FlowRecord& here) {
   GroupProxy<Producer> producers;
   // A message to a group that is not known yet counts as run for the memory budget, so create the
   // group first.
-  co_await epoch([&] { producers = create_group<Producer>(); });
+  co_await epoch([&] { producers = create<Producer>(each_pe); });
   const int each = here.n_messages * tess::n_pes();
   for (int round = 1; round <= 2; ++round) {
     co_await epoch([&] { producers.broadcast<&Producer::produce>(); });

@@ -109,7 +109,7 @@ class PriorityMember : public Group<PriorityMember> {
 };
 
 Task run_gathered(PeId busy) {
-  const auto members = create_group<PriorityMember>();
+  const auto members = create<PriorityMember>(each_pe);
   const auto elements = create<GatheredElement>(range(priority_record->n_elements));
   // The first runs only teach the senders where the elements were.
   co_await epoch([&] {
@@ -120,7 +120,7 @@ Task run_gathered(PeId busy) {
 }
 
 Task run_local() {
-  const auto members = create_group<PriorityMember>();
+  const auto members = create<PriorityMember>(each_pe);
   co_await epoch([&] { members.broadcast<&PriorityMember::send_local>(); });
 }
 

@@ -119,7 +119,7 @@ class Ticker : public Group<Ticker> {
 
 Task run_timers(std::uint64_t seed) {
   const auto elements = tess::create<TimerElement>(range(timer_record->n_elements));
-  const auto tickers = create_group<Ticker>();
+  const auto tickers = create<Ticker>(each_pe);
   for (int round = 0; round < timer_record->n_rounds; ++round) {
     const std::uint64_t of_round = mix(seed + static_cast<std::uint64_t>(round));
     co_await epoch([&] {

@@ -1,5 +1,5 @@
 // Priorities and attributes of entry methods, as programs use them.
-#include "runtime/priority.hpp"
+#include "runtime/sends.hpp"
 
 #include "runtime/machine/threads.hpp"
 #include "runtime/runtime.hpp"
