@@ -27,11 +27,10 @@ template <class C, class... Args>
 struct CreateArray {
   CollectionId id;
   Range range;
-  EpochId epoch;
   std::tuple<Args...> args;
   template <class Ar>
   void serialize(Ar& ar) {
-    ar(id, range, epoch, args);
+    ar(id, range, args);
   }
 };
 
@@ -42,10 +41,9 @@ void make_array(Pe& pe, const CreateArray<C, Args...>& m,
   auto& array =
       static_cast<Array<C>&>(add_collection(pe, Array<C>::its_kind(), m.id, m.range, map));
   std::apply([&array](const Args&... args) { array.make_initial(args...); }, m.args);
-  pe.completion().processed(m.epoch);
 }
 template <class C, class... Args>
-void create_arrives(Pe& pe, CreateArray<C, Args...>&& m) {
+void create_arrives(Pe& pe, CreateArray<C, Args...>&& m, Counted /*counted*/) {
   make_array(pe, m);
 }
 
@@ -62,10 +60,7 @@ constexpr LateMessages late_messages_of() {
 
 template <class C, class... Args>
 CreateArray<C, std::decay_t<Args>...> new_array(Pe& pe, const Range& range, Args&&... args) {
-  return {pe.new_collection_id(late_messages_of<C>()),
-          range,
-          pe.context().epoch,
-          {std::forward<Args>(args)...}};
+  return {pe.new_collection_id(late_messages_of<C>()), range, {std::forward<Args>(args)...}};
 }
 
 template <class C, class... Args>

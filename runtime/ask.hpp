@@ -113,11 +113,8 @@ class AskOf : public AskBase {
   /// Replies, in the epoch of the call.
   static void answer(Pe& here, EpochId epoch, const ReplyPlace& to, std::optional<Value>&& value,
                      std::optional<Failure>&& failure) {
-    here.completion().sent(epoch);
-    auto* message = here.stamp(
-        make_message<&AskOf::arrives>(here, Reply{to.id, std::move(value), std::move(failure)}));
-    message->epoch = epoch;
-    here.send(to.pe, message);
+    here.send(to.pe, make_message_in<&AskOf::arrives>(
+                         here, epoch, Reply{to.id, std::move(value), std::move(failure)}));
   }
 
   [[nodiscard]] bool await_ready() const { return value_.has_value() || failure_.has_value(); }
@@ -127,15 +124,13 @@ class AskOf : public AskBase {
   bool taken_ = false;  // a co_await has moved the value out
 
  private:
-  static void arrives(Pe& pe, Reply&& reply) {
-    const EpochId epoch = pe.context().epoch;
+  static void arrives(Pe& pe, Reply&& reply, Counted /*counted*/) {
     Waiter* waiter = nullptr;
     if (auto* ask = static_cast<AskOf*>(AskBase::take(pe, reply.id)); ask != nullptr) {
       ask->value_ = std::move(reply.value);
       ask->failure_ = std::move(reply.failure);
       waiter = ask->done();
     }
-    pe.completion().processed(epoch);
     if (waiter != nullptr) waiter->wake_at_end();
   }
 };

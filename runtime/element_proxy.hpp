@@ -276,10 +276,10 @@ class ElementProxy {
     return true;
   }
   void post_message(Pe& pe, detail::ElementMessage<Index>* message) const {
-    pe.completion().sent(message->epoch);
+    detail::Counted::departs(pe.completion(), message->epoch);
     if (detail::Collection* collection = detail::find_collection(pe, collection_);
         collection != nullptr) [[likely]] {
-      static_cast<detail::Array<C>*>(collection)->post(message);
+      static_cast<detail::Array<C>*>(collection)->post_counted(message);
     } else {
       check_not_empty();
       pe.send_here(message);  // it waits until the array is known here
@@ -300,7 +300,7 @@ class ElementProxy {
     if (where == pe.id()) {
       post_message(pe, message);
     } else {
-      pe.completion().sent(message->epoch);
+      pe.count(*message);
       pe.send(where, message);
     }
   }

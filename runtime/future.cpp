@@ -19,7 +19,6 @@ std::string FutureBase::describe(std::span<const std::byte> name) {
 Pe& FutureBase::sends_to(const Where& to) {
   Pe& here = current_pe();
   if (to.pe.value >= here.n_pes()) (void)here.require_future(0);
-  here.completion().sent(here.context().epoch);
   return here;
 }
 
@@ -35,7 +34,6 @@ void FutureBase::given(Pe& pe, Slot& slot) {
   pe.leave_future(slot.id);
   slot.id.store(0, std::memory_order_release);  // read by is_expected()
   if (waiter != nullptr) waiter->wake();
-  pe.completion().processed(pe.context().epoch);
 }
 
 FutureBase::Where FutureBase::name() const {

@@ -70,7 +70,7 @@ class FutureBase {
   };
   [[nodiscard]] static Where where(std::span<const std::byte> name);
   [[nodiscard]] static std::string describe(std::span<const std::byte> name);
-  /// The PE that sends a result there; the message to it counts.
+  /// The PE that sends a result there.
   [[nodiscard]] static Pe& sends_to(const Where& to);
   /// The slot of a result that arrives; `waits_for` is for errors.
   [[nodiscard]] static Slot& find(Pe& pe, std::uint64_t id, std::string_view value);
@@ -185,7 +185,7 @@ class Future : public detail::FutureBase {
     const Where to = where(callback.where());
     detail::send_system<&Future::arrives>(sends_to(to), to.pe, Result{to.id, std::move(value)});
   }
-  static void arrives(Pe& pe, Result&& result) {
+  static void arrives(Pe& pe, Result&& result, detail::Counted /*counted*/) {
     Slot& slot = find(pe, result.id, name_of_type<T>);
     static_cast<TypedSlot&>(slot).value = std::move(result.value);
     given(pe, slot);

@@ -139,7 +139,7 @@ struct CreateMapped : CreateArray<C, Args...> {
   }
 };
 template <class C, class Map, class... Args>
-void create_mapped_arrives(Pe& pe, CreateMapped<C, Map, Args...>&& m) {
+void create_mapped_arrives(Pe& pe, CreateMapped<C, Map, Args...>&& m, Counted /*counted*/) {
   make_array(pe, m, std::make_shared<TypedIndexMap<C, Map>>(std::move(m.map)));
 }
 

@@ -200,10 +200,10 @@ class InterfaceProxy {
         [[unlikely]]
       meter->sent({collection_, IndexHash<Index>()(index_)},
                   detail::payload_bytes(message->arguments));
-    pe.completion().sent(message->epoch);
+    pe.count(*message);
     if (detail::Collection* array = detail::find_collection(pe, message->collection);
         array != nullptr) {
-      static_cast<detail::ArrayOf<Index>*>(array)->post(message);
+      static_cast<detail::ArrayOf<Index>*>(array)->post_counted(message);
     } else {
       pe.send_here(message);  // it waits until the array is known here
     }

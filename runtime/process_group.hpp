@@ -159,17 +159,16 @@ class ReadOnlyPart : public Group<ReadOnlyPart<T>> {
 template <class Part, class... Args>
 struct CreateShared {
   CollectionId id{};
-  EpochId epoch{};
   std::tuple<Args...> args;
   template <class Ar>
   void serialize(Ar& ar) {
-    ar(id, epoch, args);
+    ar(id, args);
   }
 };
 
 /// Makes the object of this process and gives it to all PEs of the process.
 template <class Part, class... Args>
-void create_shared_arrives(Pe& pe, CreateShared<Part, Args...>&& m) {
+void create_shared_arrives(Pe& pe, CreateShared<Part, Args...>&& m, Counted counted) {
   using Shared = typename Part::Shared;
   const SameProcess<Shared> shared{std::apply(
       [](auto&... arg) {
@@ -178,16 +177,13 @@ void create_shared_arrives(Pe& pe, CreateShared<Part, Args...>&& m) {
       },
       m.args)};
   using Create = CreateArray<Part, SameProcess<Shared>>;
-  const Create create{m.id, range(pe.n_pes()), m.epoch, {shared}};
+  const Create create{m.id, range(pe.n_pes()), {shared}};
   constexpr auto handler = &create_arrives<Part, SameProcess<Shared>>;
   const Machine& machine = pe.machine();
   const PeId first = machine.first_pe(machine.process_of(pe.id()));
-  for (std::int32_t i = 0; i < machine.pes_per_process(); ++i) {
-    pe.completion().sent(m.epoch);
+  for (std::int32_t i = 0; i < machine.pes_per_process(); ++i)
     if (const PeId to{first.value + i}; to != pe.id()) send_system<handler>(pe, to, create);
-  }
-  handler(pe, Create(create));
-  pe.completion().processed(m.epoch);
+  handler(pe, Create(create), std::move(counted));
 }
 
 /// One message to each process, and from there pointers to its PEs.
@@ -196,16 +192,15 @@ CollectionId create_shared(Args&&... args) {
   Pe& pe = current_pe();
   const CollectionId id = pe.new_collection_id(LateMessages::counted);
   using Create = CreateShared<Part, std::decay_t<Args>...>;
-  Create create{id, pe.context().epoch, {std::forward<Args>(args)...}};
+  Create create{id, {std::forward<Args>(args)...}};
   constexpr auto handler = &create_shared_arrives<Part, std::decay_t<Args>...>;
   const Machine& machine = pe.machine();
   for (std::int32_t i = 0; i < machine.n_processes(); ++i) {
     const ProcessId process{i};
-    pe.completion().sent(create.epoch);
     if (process != machine.process_of(pe.id()))
       send_system<handler>(pe, machine.first_pe(process), create);
   }
-  handler(pe, std::move(create));
+  handler(pe, std::move(create), Counted::sent(pe.completion(), pe.context().epoch));
   return id;
 }
 

@@ -44,7 +44,6 @@ class SectionProxy {
     call.numbered.call = detail::SharedCall(new detail::CallOfAll<C, detail::OfEntry, F>(
         {}, detail::as_parameters<Arguments>(std::forward<Args>(args)...)));
     if (pe.context().led_by != 0) call.led_by = detail::Collection::led_by(pe.context(), array_);
-    pe.completion().sent(call.numbered.epoch);
     detail::send_to_collection<&Lists::start_arrives>(pe, array_, root(pe), {id_, std::move(call)});
   }
   /// As ArrayProxy::reduce(). For a result of the members F contributes to the section, which it
@@ -115,11 +114,9 @@ SectionProxy<C> create_section(const ArrayProxy<C>& array, std::vector<typename 
   }
   Pe& pe = current_pe();
   const detail::SectionId id{pe.new_collection_id(LateMessages::ignored).value};
-  const EpochId epoch = pe.context().epoch;
-  pe.completion().sent(epoch);
   detail::send_to_collection<&Lists::create_arrives>(
       pe, array.id(), detail::root_of(CollectionId{id.value}, pe.n_pes()),
-      {id, epoch, std::move(indices)});
+      {id, std::move(indices)});
   return SectionProxy<C>(array.id(), id);
 }
 

@@ -73,7 +73,7 @@ struct CreateOne : CreateArray<C> {
   }
 };
 template <class C>
-void create_one_arrives(Pe& pe, CreateOne<C>&& m) {
+void create_one_arrives(Pe& pe, CreateOne<C>&& m, Counted /*counted*/) {
   make_array(pe, m, std::make_shared<HomeOfOne>(m.id, m.given, pe.n_pes()));
 }
 

@@ -78,7 +78,7 @@ void TaskAccount::belongs_to(const Element& element) {
 void TaskAccount::hold() {
   if (held) return;
   held = true;
-  pe->completion().sent(context.epoch);
+  Counted::departs(pe->completion(), context.epoch);
   if (context.element != nullptr) pin(*context.element);
 }
 
@@ -86,7 +86,7 @@ void TaskAccount::release() {
   if (!held) return;
   held = false;
   pe->suspended().erase(entry);
-  pe->completion().processed(context.epoch);
+  (void)Counted(pe->completion(), context.epoch);
   if (context.element != nullptr) unpin(*context.element);
 }
 

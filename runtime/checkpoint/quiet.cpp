@@ -20,7 +20,7 @@ void Quiet::await_suspend(Task::Handle task) {
   task_ = task;
   id_ = pe_.enter_future(this);
   suspend(task, [] { return std::string("the end of all messages, for a checkpoint"); });
-  pe_.completion().hop_sent();  // the run is not over meanwhile
+  hold_.emplace(pe_.completion());
   ask();
 }
 
@@ -61,7 +61,7 @@ void Quiet::take(const Answered& answer) {
     return;
   }
   resume_later(task_);
-  pe_.completion().hop_processed();
+  hold_.reset();
 }
 
 }  // namespace tess::detail

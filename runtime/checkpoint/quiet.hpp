@@ -11,6 +11,7 @@
 #include "runtime/task.hpp"
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -59,6 +60,7 @@ class Quiet {
 
   Pe& pe_ = current_pe();
   Task::Handle task_;
+  std::optional<RunHold> hold_;  // the run is not over meanwhile
   std::uint64_t id_ = 0;
   std::int32_t n_left_ = 0;
   bool reports_ = false;

@@ -22,16 +22,19 @@ constexpr std::uint64_t most_broadcasts = ~std::uint32_t{0};
 }  // namespace
 
 struct BroadcastLog::Tables {
-  std::deque<NumberedCall> copies;              // first_kept_ … applied_
-  std::map<std::uint64_t, NumberedCall> early;  // arrived before their turn
+  struct Early {
+    NumberedCall call;
+    Counted counted;
+  };
+  std::deque<NumberedCall> copies;       // first_kept_ … applied_
+  std::deque<Counted> unsettled;         // those of settled_ + 1 … applied_
+  std::map<std::uint64_t, Early> early;  // arrived before their turn
   std::map<std::uint64_t, std::uint64_t> in_flight;
   std::map<PeId, std::uint64_t> settled_by;  // at the root
 };
 
-BroadcastLog::BroadcastLog(BroadcastHost& host, Completion& completion, PeId here, PeId root,
-                           std::int32_t n_pes)
+BroadcastLog::BroadcastLog(BroadcastHost& host, PeId here, PeId root, std::int32_t n_pes)
     : host_(host),
-      completion_(completion),
       here_(here),
       root_(root),
       n_pes_(n_pes),
@@ -48,22 +51,21 @@ std::size_t BroadcastLog::n_kept() const {
   return tables_->copies.size();
 }
 
-void BroadcastLog::on_start(NumberedCall&& call) {
+void BroadcastLog::on_start(NumberedCall&& call, Counted counted) {
   call.number = ++last_number_;
   TESS_CHECK(last_number_ <= most_broadcasts, "a collection has had ", last_number_ - 1,
              " broadcasts, which is the limit: create another one");
-  on_call(std::move(call));
+  on_call(std::move(call), std::move(counted));
 }
 
-void BroadcastLog::on_call(NumberedCall&& call) {
-  for (const PeId child : children_) {
-    completion_.sent(call.epoch);
-    host_.send(child, call);
-  }
+void BroadcastLog::on_call(NumberedCall&& call, Counted counted) {
+  for (const PeId child : children_) host_.send(child, call);
   host_.flush();  // other processes do not wait for the local elements
-  tables_->early.emplace(call.number, std::move(call));
+  tables_->early.emplace(call.number, Tables::Early{std::move(call), std::move(counted)});
   while (!tables_->early.empty() && tables_->early.begin()->first == applied_ + 1) {
-    tables_->copies.push_back(std::move(tables_->early.begin()->second));
+    Tables::Early& next = tables_->early.begin()->second;
+    tables_->copies.push_back(std::move(next.call));
+    tables_->unsettled.push_back(std::move(next.counted));
     tables_->early.erase(tables_->early.begin());
     ++applied_;
     const NumberedCall current = tables_->copies.back();
@@ -83,9 +85,8 @@ void BroadcastLog::settle() {
       tables_->in_flight.empty() ? applied_ : std::min(applied_, tables_->in_flight.begin()->first);
   while (settled_ < now) {
     ++settled_;
-    const NumberedCall& call = tables_->copies[settled_ - first_kept_];
-    untold_bytes_ += call.n_bytes;
-    completion_.processed(call.epoch);
+    untold_bytes_ += tables_->copies[settled_ - first_kept_].n_bytes;
+    tables_->unsettled.pop_front();
   }
   if (settled_ - told_ < portion && untold_bytes_ < portion_bytes) return;
   told_ = settled_;
@@ -94,11 +95,8 @@ void BroadcastLog::settle() {
 }
 
 void BroadcastLog::end() {
-  while (settled_ < applied_) {
-    ++settled_;
-    completion_.processed(tables_->copies[settled_ - first_kept_].epoch);
-  }
-  for (const auto& [number, call] : tables_->early) completion_.processed(call.epoch);
+  settled_ = applied_;
+  tables_->unsettled.clear();
   tables_->copies.clear();
   tables_->early.clear();
   tables_->in_flight.clear();

@@ -11,7 +11,7 @@
 #pragma once
 
 #include "runtime/collections/broadcast_call.hpp"
-#include "runtime/completion/completion.hpp"
+#include "runtime/completion/counted.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -38,7 +38,8 @@ class BroadcastHost {
   BroadcastHost& operator=(const BroadcastHost&) = delete;
   virtual ~BroadcastHost() = default;
 
-  // The log of PE `to` receives these by on_call(), on_settled() and on_drop().
+  // The log of PE `to` receives these by on_call(), on_settled() and on_drop(). A call counts in its
+  // epoch.
   virtual void send(PeId to, const NumberedCall& call) = 0;
   virtual void send(PeId to, const BroadcastSettled& settled) = 0;
   virtual void send(PeId to, const BroadcastDrop& drop) = 0;
@@ -51,8 +52,7 @@ class BroadcastHost {
 class BroadcastLog {
  public:
   /// The part of PE `here` of `n_pes`; `root` numbers the broadcasts.
-  BroadcastLog(BroadcastHost& host, Completion& completion, PeId here, PeId root,
-               std::int32_t n_pes);
+  BroadcastLog(BroadcastHost& host, PeId here, PeId root, std::int32_t n_pes);
   BroadcastLog(const BroadcastLog&) = delete;
   BroadcastLog& operator=(const BroadcastLog&) = delete;
   ~BroadcastLog();
@@ -70,9 +70,9 @@ class BroadcastLog {
   /// The calls that an element with this `seen` still has to receive here, oldest first.
   [[nodiscard]] std::vector<NumberedCall> missed(std::uint64_t seen) const;
 
-  /// At the root: a broadcast starts. It is counted as sent in its epoch.
-  void on_start(NumberedCall&& call);
-  void on_call(NumberedCall&& call);
+  /// At the root: a broadcast starts.
+  void on_start(NumberedCall&& call, Counted counted);
+  void on_call(NumberedCall&& call, Counted counted);
   void on_settled(const BroadcastSettled& settled);
   void on_drop(const BroadcastDrop& drop);
 
@@ -82,7 +82,6 @@ class BroadcastLog {
   void settle();
 
   BroadcastHost& host_;
-  Completion& completion_;
   const PeId here_, root_;
   const std::int32_t n_pes_;
   const std::vector<PeId> children_;

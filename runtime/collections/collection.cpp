@@ -27,14 +27,12 @@ struct Settling {
   }
 };
 
-void run_settling(Pe& pe, Settling&& settling) {
+void run_settling(Pe& pe, Settling&& settling, Counted /*counted*/) {
   Context& context = pe.context();
-  const EpochId epoch = context.epoch;
   context.led_by = settling.led_by;
   context.led_in = settling.led_in;
   Collection::release(*settling.element);
   Collection::of(*settling.element).settle(*settling.element);
-  pe.completion().processed(epoch);
 }
 
 }  // namespace
@@ -69,7 +67,7 @@ Collection::Collection(Pe& pe, CollectionId id, std::string name, const Range& r
     : HostedCollection(id, std::move(name)),
       pe_(pe),
       range_(range),
-      broadcasts_(broadcast_host_, pe.completion(), pe.id(), root(), pe.n_pes()),
+      broadcasts_(broadcast_host_, pe.id(), root(), pe.n_pes()),
       reductions_(reduction_host_, pe.completion(), pe.id(), root(), pe.n_pes(),
                   {this->name() + ": reduction",
                    [this](std::uint32_t number) { return elements_before(number); }}) {
@@ -345,17 +343,24 @@ void Collection::drop_record(Pe& pe, Reader& ar) {
   if (!ar.take<bool>()) return;
   BalanceRecord record;
   record.unpack(ar, pe.start_meter());
-  if (record.sync.phase == SyncPhase::waits) pe.completion().processed(record.sync.epoch);
+  (void)take_wait(pe, record, SyncPhase::runs);
 }
 
-void Collection::drop_record(Pe& pe, const Element& element) {
-  if (element.balance_ && element.balance_->sync.phase == SyncPhase::waits)
-    pe.completion().processed(element.balance_->sync.epoch);
+void Collection::end_wait(Pe& pe, const Element& element) {
+  if (element.balance_) (void)take_wait(pe, *element.balance_, SyncPhase::runs);
 }
 
-void Collection::continue_wait(const Element& element, Envelope& message, std::uint32_t& led_by) {
-  message.epoch = element.balance_->sync.epoch;  // counted in this epoch since at_sync()
+Counted Collection::take_wait(Pe& pe, BalanceRecord& record, SyncPhase next) {
+  if (record.sync.phase != SyncPhase::waits) return {};
+  record.sync.phase = next;
+  return {pe.completion(), record.sync.epoch};
+}
+
+Counted Collection::continue_wait(const Element& element, Envelope& message,
+                                  std::uint32_t& led_by) {
+  message.epoch = element.balance_->sync.epoch;
   led_by = element.balance_->sync.led_by;
+  return take_wait(pe_, *element.balance_, SyncPhase::resumes);
 }
 
 bool Collection::known(const BalanceRecord& record) {
@@ -383,18 +388,12 @@ void Collection::end() {
   watcher_ = nullptr;
   for (Element* element : elements_) {
     if (element->n_suspended_ != 0) element->destroy_requested_ = true;
-    end_wait(*element);
+    end_wait(pe_, *element);
   }
   broadcasts_.end();
   reductions_.end();
   if (second_tree_ != nullptr) second_tree_->end();
-  if (scans_) scans_->drop(pe_.completion());
-}
-
-void Collection::end_wait(Element& element) {
-  if (!element.balance_ || element.balance_->sync.phase != SyncPhase::waits) return;
-  element.balance_->sync.phase = SyncPhase::runs;
-  pe_.completion().processed(element.balance_->sync.epoch);
+  scans_.reset();
 }
 
 void Collection::at_sync(Element& element) {
@@ -404,9 +403,8 @@ void Collection::at_sync(Element& element) {
   TESS_CHECK(sync.phase == SyncPhase::runs, element_text(element),
              " calls at_sync() again before it was resumed");
   sync.phase = SyncPhase::waits;
-  sync.epoch = pe_.context().epoch;
+  sync.epoch = Counted::departs(pe_.completion(), pe_.context().epoch);  // it may migrate meanwhile
   sync.led_by = pe_.context().led_by;
-  pe_.completion().sent(sync.epoch);
   if (watcher_ != nullptr) watcher_->at_sync(element);
 }
 
@@ -418,10 +416,8 @@ void Collection::move(Element& element, PeId to) {
 void Collection::settle_later(Element& element) {
   hold(element);
   const Context& context = pe_.context();
-  auto* message = pe_.stamp(
-      make_message<&run_settling>(pe_, Settling{&element, context.led_by, context.led_in}));
-  pe_.completion().sent(message->epoch);
-  pe_.run_next(message);
+  pe_.run_next(make_message_in<&run_settling>(pe_, context.epoch,
+                                              Settling{&element, context.led_by, context.led_in}));
 }
 
 void Collection::resume(Element& element) {

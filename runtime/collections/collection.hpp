@@ -20,6 +20,7 @@
 namespace tess::detail {
 
 struct LoadRecord;
+enum class SyncPhase : std::uint8_t;
 class IndexMap;
 class KeptScans;
 class Sections;
@@ -140,12 +141,13 @@ class Collection : public HostedCollection {
   /// A migrating element takes its record along, if it has one.
   static void pack_record(const Element& element, Writer& ar);
   static void unpack_record(Element& element, Reader& ar);
-  /// The element of this state, or this element, arrives after the end of its collection: releases
-  /// the epoch of its wait at a barrier.
+  /// The element of this state arrives after the end of its collection: releases the epoch of its
+  /// wait at a barrier.
   static void drop_record(Pe& pe, Reader& ar);
-  static void drop_record(Pe& pe, const Element& element);
-  /// Gives the message that resumes the element the epoch and the broadcast of its wait.
-  static void continue_wait(const Element& element, Envelope& message, std::uint32_t& led_by);
+  /// Gives the message that resumes the element the epoch and the broadcast of its wait. The wait is
+  /// over once the message is sent.
+  [[nodiscard]] Counted continue_wait(const Element& element, Envelope& message,
+                                      std::uint32_t& led_by);
   /// True if the element has not migrated yet.
   [[nodiscard]] static bool never_moved(const Element& element) {
     return element.state_.version.epoch <= 1;
@@ -283,7 +285,7 @@ class Collection : public HostedCollection {
   /// An element is destroyed that no observer sees.
   void note_unwatched_end(const Element& element);
   /// Releases the epoch of an element that waits at its balancer's barrier and is being destroyed.
-  void end_wait(Element& element);
+  static void end_wait(Pe& pe, const Element& element);
   /// Runs the calls that constructors have requested.
   void run_after_construction();
   [[nodiscard]] bool has_after_construction() const { return !after_construction_.empty(); }
@@ -308,6 +310,8 @@ class Collection : public HostedCollection {
     return element.balance_ && known(*element.balance_);
   }
   [[nodiscard]] static bool known(const BalanceRecord& record);
+  /// The wait of this element at its barrier, if it waits, which it does no longer.
+  [[nodiscard]] static Counted take_wait(Pe& pe, BalanceRecord& record, SyncPhase next);
   void postpone(Element& element);
   /// True if this is the first contribution of an element that was inserted without the name of a
   /// round, and nothing tells that it joined at the round for which the program means the value.

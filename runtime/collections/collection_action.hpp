@@ -1,6 +1,6 @@
 // Messages to a collection on a PE that do not involve chares: a handler function of (Collection
-// type&, Payload&&) and its payload. A message that arrives before its collection is known on the
-// PE waits for it.
+// type&, Payload&&) or, if they count in their epoch, (Collection type&, Payload&&, Counted). A
+// message that arrives before its collection is known on the PE waits for it.
 #pragma once
 
 #include "runtime/collections/collection.hpp"
@@ -8,13 +8,6 @@
 
 namespace tess::detail {
 
-template <class F>
-struct CollectionHandler;
-template <class C, class P>
-struct CollectionHandler<void (*)(C&, P&&)> {
-  using Collection = C;
-  using Payload = P;
-};
 template <class P>
 struct ToCollection {
   CollectionId collection;
@@ -28,7 +21,7 @@ struct ToCollection {
 
 template <auto Handler, Traffic Kind = Traffic::control>
 struct CollectionAction {
-  using Of = CollectionHandler<decltype(Handler)>;
+  using Of = HandlerType<decltype(Handler)>;
   using Payload = typename Of::Payload;
   using Held = Message<ToCollection<Payload>>;
 
@@ -40,11 +33,15 @@ struct CollectionAction {
       return;
     }
     Payload payload = std::move(message->payload.payload);
+    const EpochId epoch = envelope->epoch;
     Held::destroy(envelope);
-    Handler(static_cast<typename Of::Collection&>(*collection), std::move(payload));
+    Of::template call<Handler>(pe, epoch, static_cast<typename Of::Receiver&>(*collection),
+                               std::move(payload));
   }
-  /// The collection has ended: a payload that belongs to an epoch settles it.
+  /// The collection has ended. A payload may have more to do then; it returns the number of user
+  /// messages that are lost.
   static std::uint64_t drop(Pe& pe, Envelope& envelope) {
+    const Counted counted(pe.completion(), Of::counts ? envelope.epoch : EpochId{});
     const Payload& payload = static_cast<Held&>(envelope).payload.payload;
     if constexpr (requires { payload.drop(pe); }) {
       return payload.drop(pe);
@@ -71,7 +68,7 @@ struct CollectionAction {
 };
 
 /// Sends a payload to the part of a collection on a PE, where it may not be known yet. It counts as
-/// a hop of epoch 0 and for no other epoch.
+/// a hop of epoch 0 and, if the handler takes a Counted, in the current epoch.
 template <auto Handler, Traffic Kind = Traffic::control>
 void send_to_collection(Pe& pe, CollectionId id, PeId to,
                         typename CollectionAction<Handler, Kind>::Payload payload) {
@@ -79,7 +76,9 @@ void send_to_collection(Pe& pe, CollectionId id, PeId to,
   auto* message =
       A::Held::make(pe, A::action, ToCollection<typename A::Payload>{id, std::move(payload)});
   if constexpr (A::has_priority) message->prioritised = message->payload.payload.priority() != 0;
-  pe.send(to, pe.stamp(message));
+  pe.stamp(message);
+  if constexpr (A::Of::counts) pe.count(*message);
+  pe.send(to, message);
 }
 template <auto Handler, Traffic Kind = Traffic::control>
 void send_to_collection(Collection& collection, PeId to,

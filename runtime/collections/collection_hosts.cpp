@@ -7,12 +7,12 @@
 namespace tess::detail {
 namespace {
 
-void start_arrives(Collection& collection, NumberedCall&& m) {
+void start_arrives(Collection& collection, NumberedCall&& m, Counted counted) {
   m.n_complete = collection.reductions().n_complete();
-  collection.broadcasts().on_start(std::move(m));
+  collection.broadcasts().on_start(std::move(m), std::move(counted));
 }
-void call_arrives(Collection& collection, NumberedCall&& m) {
-  collection.broadcasts().on_call(std::move(m));
+void call_arrives(Collection& collection, NumberedCall&& m, Counted counted) {
+  collection.broadcasts().on_call(std::move(m), std::move(counted));
 }
 void settled_arrives(Collection& collection, BroadcastSettled&& m) {
   collection.broadcasts().on_settled(m);
@@ -36,17 +36,11 @@ void start_broadcast(CollectionId collection, SharedCall call) {
   if (collection == CollectionId{}) [[unlikely]]
     refuse_empty_proxy(text("a broadcast of ", plain_name(call->action().name()), " to"));
   Pe& pe = current_pe();
-  const EpochId epoch = pe.context().epoch;
   Writer count{std::span<std::byte>()};
   call->pack(count);  // may throw
-  pe.completion().sent(epoch);
-  send_to_collection<&start_arrives>(pe, collection, root_of(collection, pe.n_pes()),
-                                     NumberedCall{0, epoch, std::move(call), 0, count.n_bytes()});
-}
-
-std::uint64_t NumberedCall::drop(Pe& pe) const {
-  pe.completion().processed(epoch);
-  return number == 0 ? 1 : 0;
+  send_to_collection<&start_arrives>(
+      pe, collection, root_of(collection, pe.n_pes()),
+      NumberedCall{0, pe.context().epoch, std::move(call), 0, count.n_bytes()});
 }
 
 std::int64_t ReductionReport::priority() const {

@@ -9,37 +9,25 @@ namespace {
 
 struct End {
   CollectionId id{};
-  EpochId epoch{};
-
-  std::uint64_t drop(Pe& pe) const {
-    pe.completion().processed(epoch);
-    return 0;
-  }
 };
 struct Free {
   CollectionId id{};
 };
 
-void ending_arrives(Collection& collection, End&& m) {
+void ending_arrives(Collection& collection, End&& /*m*/, Counted counted) {
   Pe& pe = collection.pe();
   std::unique_ptr<HostedCollection> ending = pe.take_out(collection.id());
   collection.end();
-  if (collection.n_local() != 0) {
-    pe.keep_ending(std::move(ending), m.epoch);
-    return;
-  }
-  ending.reset();
-  pe.completion().processed(m.epoch);
+  if (collection.n_local() != 0) pe.keep_ending(std::move(ending), std::move(counted));
 }
 
 /// On each PE, whether the collection is known there already, or has ended by another call.
-void end_arrives(Pe& pe, End&& m) {
+void end_arrives(Pe& pe, End&& m, Counted /*counted*/) {
   send_to_collection<&ending_arrives>(pe, m.id, pe.id(), m);
 }
 
 void freeing_arrives(Pe& pe, Free&& m) {
   const Pe::Ending ending = pe.take_ending(m.id);  // frees it at the end of this function
-  pe.completion().processed(ending.epoch);
 }
 
 }  // namespace
@@ -47,7 +35,7 @@ void freeing_arrives(Pe& pe, Free&& m) {
 void end_collection(CollectionId id) {
   if (id == CollectionId{}) refuse_empty_proxy("destroy() of");
   Pe& pe = current_pe();
-  send_to_all<&end_arrives>(pe, {id, pe.context().epoch});
+  send_to_all<&end_arrives>(pe, {id});
 }
 
 bool in_running_program() {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "runtime/collections/broadcast_call.hpp"
+#include "runtime/completion/counted.hpp"
 #include "runtime/core/ids.hpp"
 
 #include <compare>
@@ -26,6 +27,12 @@ struct SectionCall {
   }
 };
 
+/// A multicast that waits on a PE.
+struct WaitingCall {
+  SectionCall call;
+  Counted counted;
+};
+
 /// One element's part in one section.
 struct Membership {
   SectionId section;
@@ -41,6 +48,6 @@ struct Membership {
 using Memberships = std::vector<Membership>;
 
 /// The element arrives where its array has ended: releases the epochs that wait for it.
-void drop(Pe& pe, const Memberships& memberships);
+void drop(Pe& pe, Memberships& memberships);
 
 }  // namespace tess::detail

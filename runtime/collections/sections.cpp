@@ -33,12 +33,6 @@ struct Gone {
 };
 struct EndSection {
   SectionId section;
-  EpochId epoch;
-
-  std::uint64_t drop(Pe& pe) const {
-    pe.completion().processed(epoch);
-    return 0;
-  }
 };
 
 void report_arrives(Collection& collection, ReportTo&& m) {
@@ -60,28 +54,30 @@ void gone_arrives(Collection& collection, Gone&& m) {
   part->total.remove_member(m.next);
   part->deliver_complete();
 }
-void end_arrives(Collection& collection, EndSection&& m) {
+void end_arrives(Collection& collection, EndSection&& m, Counted /*counted*/) {
   collection.sections().end(m.section);
-  collection.pe().completion().processed(m.epoch);
 }
 
-void settle_early(Pe& pe, const std::vector<SectionCall>& early) {
-  for (const SectionCall& call : early) pe.completion().processed(call.numbered.epoch);
+/// The multicasts that wait for their turn with an element that has arrived.
+std::vector<WaitingCall> arrived(Pe& pe, std::vector<SectionCall>&& early) {
+  std::vector<WaitingCall> waiting;
+  for (SectionCall& call : early) {
+    Counted counted(pe.completion(), call.numbered.epoch);
+    waiting.push_back({std::move(call), std::move(counted)});
+  }
+  return waiting;
 }
 
 }  // namespace
 
-void drop(Pe& pe, const Memberships& memberships) {
-  for (const Membership& membership : memberships) settle_early(pe, membership.early);
+void drop(Pe& pe, Memberships& memberships) {
+  for (Membership& membership : memberships) (void)arrived(pe, std::move(membership.early));
 }
 
 void end_section(CollectionId collection, SectionId section) {
   Pe& pe = current_pe();
-  const EndSection end{section, pe.context().epoch};
-  for (std::int32_t to = 0; to < pe.n_pes(); ++to) {
-    pe.completion().sent(end.epoch);
-    send_to_collection<&end_arrives>(pe, collection, PeId{to}, end);
-  }
+  for (std::int32_t to = 0; to < pe.n_pes(); ++to)
+    send_to_collection<&end_arrives>(pe, collection, PeId{to}, EndSection{section});
 }
 
 SectionPart::SectionPart(Sections& sections_, SectionId id_)
@@ -169,11 +165,10 @@ bool Sections::join(Element& element, SectionId id, std::uint32_t ordinal) {
   member.joined = true;
   of->slots[ordinal] = seat.slot;
   // A result may be delivered meanwhile: then the seat is another one, or the section has ended.
-  for (auto& [epoch, value] : std::exchange(member.held, {})) {
+  for (auto& [counted, value] : std::exchange(member.held, {})) {
     seat = find(element, id);
     if (seat.part != nullptr)
-      seat.part->reduction.contribute(seat.member().next++, epoch, std::move(value));
-    collection_.pe().completion().processed(epoch);
+      seat.part->reduction.contribute(seat.member().next++, counted.epoch(), std::move(value));
   }
   Collection::release(element);
   return true;
@@ -223,8 +218,7 @@ void Sections::deliver(const Seat& seat, const SectionCall& call) {
   if (call.numbered.number != seat.member().seen + 1) {
     TESS_CHECK(call.numbered.number > seat.member().seen, element_text(element),
                " receives a multicast twice");
-    pe.completion().sent(call.numbered.epoch);
-    seat.member().early.push_back(call);
+    seat.member().early.push_back({call, Counted::sent(pe.completion(), call.numbered.epoch)});
     return;
   }
   seat.member().seen = call.numbered.number;
@@ -232,13 +226,13 @@ void Sections::deliver(const Seat& seat, const SectionCall& call) {
   // The one that waits for its turn becomes its own message, since its epoch waits for what it
   // causes. It is sent now: the call may make the element leave.
   auto& early = seat.member().early;
-  const auto next = std::find_if(early.begin(), early.end(), [&call](const SectionCall& one) {
-    return one.numbered.number == call.numbered.number + 1;
+  const auto next = std::find_if(early.begin(), early.end(), [&call](const WaitingCall& one) {
+    return one.call.numbered.number == call.numbered.number + 1;
   });
   if (next != early.end()) {
-    const SectionCall waiting = std::move(*next);
+    const WaitingCall waiting = std::move(*next);
     early.erase(next);
-    lists_->send_again(element, part.id, waiting);
+    lists_->send_again(element, part.id, waiting.call);
   }
   // An element that is over may still wait for Join of another section.
   if (!collection_.is_over(element)) this->call(element, call);
@@ -268,8 +262,7 @@ void Sections::contribute(const Seat& seat, std::unique_ptr<Partial> value) {
   SectionPart::Member& member = seat.member();
   const EpochId epoch = collection_.pe().context().epoch;
   if (member.joined) return seat.part->reduction.contribute(member.next++, epoch, std::move(value));
-  collection_.pe().completion().sent(epoch);
-  member.held.push_back({epoch, std::move(value)});
+  member.held.push_back({Counted::sent(collection_.pe().completion(), epoch), std::move(value)});
 }
 
 void Sections::move_slot(SectionPart& part, std::uint32_t from, std::uint32_t to) {
@@ -309,17 +302,15 @@ void Sections::close_holes(SectionPart& part) {
 
 void Sections::enter(Element& element, Memberships&& memberships) {
   for (Membership& membership : memberships) {
+    std::vector<WaitingCall> early = arrived(collection_.pe(), std::move(membership.early));
     SectionPart* const of = part(membership.section);
-    if (of == nullptr) {
-      settle_early(collection_.pe(), membership.early);
-      continue;
-    }
+    if (of == nullptr) continue;
     SectionPart::Member member;
     member.ordinal = membership.ordinal;
     member.next = membership.next;
     member.seen = membership.seen;
     member.joined = true;
-    member.early = std::move(membership.early);
+    member.early = std::move(early);
     add(*of, element, std::move(member));
     of->reduction.advance();
   }
@@ -332,15 +323,19 @@ Memberships Sections::leave(Element& element) {
   auto node = seats_.extract(&element);
   for (const Seat& seat : node.mapped()) {
     SectionPart::Member member = remove(*seat.part, seat.slot);
-    memberships.push_back(Membership{seat.part->id, member.ordinal, member.next, member.seen,
-                                     std::move(member.early)});
+    Membership& left = memberships.emplace_back(
+        Membership{seat.part->id, member.ordinal, member.next, member.seen, {}});
+    for (auto& [call, counted] : member.early) {
+      counted.leave();
+      left.early.push_back(std::move(call));
+    }
   }
   for (const Seat& seat : node.mapped()) seat.part->reduction.advance();
   return memberships;
 }
 
 void Sections::destroyed(Element& element) {
-  const Memberships memberships = leave(element);
+  Memberships memberships = leave(element);
   drop(collection_.pe(), memberships);
   for (const Membership& membership : memberships)
     send_to_collection<&gone_arrives>(
@@ -350,11 +345,8 @@ void Sections::destroyed(Element& element) {
 
 /// Ends the part; `released` gets the elements that waited for Join.
 void Sections::free(std::unique_ptr<SectionPart> part, std::vector<Element*>& released) {
-  Pe& pe = collection_.pe();
   for (SectionPart::Member& member : part->members) {
-    settle_early(pe, member.early);
     if (!member.joined) {
-      for (const auto& held : member.held) pe.completion().processed(held.epoch);
       Collection::release(*member.element);
       released.push_back(member.element);
     }
@@ -365,7 +357,7 @@ void Sections::free(std::unique_ptr<SectionPart> part, std::vector<Element*>& re
     seats_.erase(seats);
   }
   part->reduction.end();
-  part->total.end(pe.completion());
+  part->total.end(collection_.pe().completion());
 }
 
 void Sections::end(SectionId id) {

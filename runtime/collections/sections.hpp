@@ -33,7 +33,7 @@ class SectionLists {
   SectionLists& operator=(const SectionLists&) = delete;
   virtual ~SectionLists() = default;
 
-  /// Sends a multicast to an element here as an ordinary message, which is counted as sent.
+  /// Sends a multicast to an element here as an ordinary message.
   virtual void send_again(Element& element, SectionId section, const SectionCall& call) = 0;
   /// On the root: a member was destroyed.
   virtual void gone(SectionId section, std::uint32_t ordinal) = 0;
@@ -64,9 +64,9 @@ class SectionPart final : public SectionHost {
     std::uint64_t seen = 0;
     std::uint64_t listed = 0;  // the generation of lists that has it on this PE; 0: none
     bool joined = false;
-    std::vector<SectionCall> early;
+    std::vector<WaitingCall> early;
     struct Held {
-      EpochId epoch;
+      Counted counted;
       std::unique_ptr<Partial> value;
     };
     std::vector<Held> held;  // its contributions before it has joined

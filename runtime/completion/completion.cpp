@@ -78,6 +78,10 @@ void Completion::find_own(EpochId epoch) {
   last_ = &tally.own;
 }
 
+void Completion::processed_by_call(EpochId epoch) {
+  processed(epoch);
+}
+
 EpochId Completion::open(EpochId parent, std::function<void()> on_done) {
   const EpochId epoch{(++n_opened_ << 24U) | static_cast<std::uint64_t>(here_.value)};
   Epochs::Coordinated& of = epochs_->coordinated[epoch];
@@ -100,7 +104,7 @@ void Completion::check_later(EpochId epoch) {
 }
 
 bool Completion::report_epochs() {
-  if (changed_.empty()) return false;
+  if (changed_.empty() || !reports_) return false;
   std::vector<EpochId> changed;
   changed.swap(changed_);
   bool any = false;

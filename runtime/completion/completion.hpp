@@ -127,15 +127,6 @@ class Completion {
   void hop_sent() { ++run_.own.sent; }
   void hop_processed() { ++run_.own.processed; }
 
-  /// Counts a user's message in another epoch: once when it is sent, and once when all its work is
-  /// done.
-  void sent(EpochId epoch) {
-    if (epoch.value != 0) ++own(epoch).sent;
-  }
-  void processed(EpochId epoch) {
-    if (epoch.value != 0) ++own(epoch).processed;
-  }
-
   /// Opens an epoch that this PE coordinates; `on_done` runs on this PE once the epoch is done.
   /// Messages belong to it if they are sent with its number; close() marks the end of the body.
   EpochId open(EpochId parent, std::function<void()> on_done);
@@ -144,6 +135,9 @@ class Completion {
   /// Reports changes of the scoped epochs and answers reports. Returns true if anything was sent or
   /// done.
   bool report_epochs();
+  /// The run ends by an exception: it may have ended messages whose work is not done, so no epoch
+  /// may end by them.
+  void stop_reporting() { reports_ = false; }
   /// True if epoch 0 has something to report or to answer.
   [[nodiscard]] bool run_changed() const { return run_.owed != 0 || run_.sum() != run_.reported; }
   /// Reports and answers for epoch 0. Called when report_epochs() has nothing more to do: the
@@ -171,6 +165,18 @@ class Completion {
   void on(const End& end);
 
  private:
+  friend class Counted;
+
+  // Counts a user's message in an epoch other than 0: once when it is sent, and once when all its
+  // work is done.
+  void sent(EpochId epoch) {
+    if (epoch.value != 0) ++own(epoch).sent;
+  }
+  void processed(EpochId epoch) {
+    if (epoch.value != 0) ++own(epoch).processed;
+  }
+  void processed_by_call(EpochId epoch);  // not inline
+
   struct Relay;
   struct Epochs;
 
@@ -207,6 +213,7 @@ class Completion {
   EpochId last_epoch_{};  // 0: none. It is listed, and its tally has not moved since.
   Counters* last_ = nullptr;
   std::uint64_t n_opened_ = 0;
+  bool reports_ = true;
 };
 
 }  // namespace tess::detail

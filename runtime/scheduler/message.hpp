@@ -1,6 +1,8 @@
-// An envelope with one payload: its construction, packing and release.
+// An envelope with one payload: its construction, packing and release; and the function that handles
+// such a message where it arrives.
 #pragma once
 
+#include "runtime/completion/counted.hpp"
 #include "runtime/messages/envelope.hpp"
 #include "runtime/scheduler/block.hpp"
 
@@ -27,6 +29,33 @@ struct Message final : Envelope {
     auto* message = new (allocate_received(pe, sizeof(Message))) Message(Payload{});
     ar(message->payload);
     return message;
+  }
+};
+
+/// The type of a handler: what it gets is a part of its PE, the payload, and, where its messages
+/// count in the epoch in which they are sent, the Counted of the message. Such a message is counted
+/// as sent by whatever sends it, and as processed when the handler has returned, unless the handler
+/// keeps the Counted.
+template <class F>
+struct HandlerType;
+template <class R, class P>
+struct HandlerType<void (*)(R&, P&&)> {
+  using Receiver = R;
+  using Payload = P;
+  static constexpr bool counts = false;
+  template <auto Handler>
+  static void call(Pe& /*pe*/, EpochId /*epoch*/, R& receiver, P&& payload) {
+    Handler(receiver, std::move(payload));
+  }
+};
+template <class R, class P>
+struct HandlerType<void (*)(R&, P&&, Counted)> {
+  using Receiver = R;
+  using Payload = P;
+  static constexpr bool counts = true;
+  template <auto Handler>
+  static void call(Pe& pe, EpochId epoch, R& receiver, P&& payload) {
+    Handler(receiver, std::move(payload), Counted(pe.completion(), epoch));
   }
 };
 

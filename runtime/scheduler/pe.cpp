@@ -100,6 +100,10 @@ void Pe::keep_exception(std::exception_ptr error) {
   if (!kept_exception_) kept_exception_ = std::move(error);
 }
 
+void Pe::count(const Envelope& message) {
+  Counted::departs(completion_, message.epoch);
+}
+
 void Pe::set_forced_migrations(double chance, ElementMover* mover) {
   migration_chance_ = chance;
   mover_ = mover;
@@ -268,6 +272,7 @@ void Pe::run(Envelope* message) {
     exception(error.what(), 2);
   } catch (const std::bad_alloc&) {
     kept_exception_ = nullptr;
+    completion_.stop_reporting();
     runtime_.out_of_memory(*this, std::exchange(place_, {}));
   } catch (const std::exception& error) {
     exception(error.what(), 1);
@@ -322,6 +327,7 @@ void Pe::note_constructor(std::string_view of, std::initializer_list<std::string
 
 void Pe::exception(const char* what, int exit_code) {
   kept_exception_ = nullptr;
+  completion_.stop_reporting();
   note_place();
   const std::string place = std::exchange(place_, {});
   // Bad input is the user's to correct: one line without a trace. Everything else is a bug, so its
@@ -458,8 +464,8 @@ std::unique_ptr<HostedCollection> Pe::take_out(CollectionId id) {
   return collection;
 }
 
-void Pe::keep_ending(std::unique_ptr<HostedCollection> collection, EpochId epoch) {
-  ending_.push_back({std::move(collection), epoch});
+void Pe::keep_ending(std::unique_ptr<HostedCollection> collection, Counted end) {
+  ending_.push_back({std::move(collection), std::move(end)});
 }
 
 Pe::Ending Pe::take_ending(CollectionId id) {

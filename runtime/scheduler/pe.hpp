@@ -5,6 +5,7 @@
 
 #include "runtime/base/pool.hpp"
 #include "runtime/base/ticks.hpp"
+#include "runtime/completion/counted.hpp"
 #include "runtime/core/check.hpp"
 #include "runtime/core/hash.hpp"
 #include "runtime/messages/envelope.hpp"
@@ -124,6 +125,11 @@ class Pe {
     return message;
   }
 
+  /// Counts a new message, which has been stamped, in its epoch. Where it ends, the Counted that
+  /// holds it then counts it as processed. Not inline, since it stands in the code of each type of
+  /// message; calls of entry methods are counted inline.
+  void count(const Envelope& message);
+
   /// Starts recording a trace.
   void start_trace(std::size_t most_records);
   /// Null without a trace.
@@ -186,10 +192,10 @@ class Pe {
   /// Removes a collection from the table: it ends here, and later messages to it are dropped.
   [[nodiscard]] std::unique_ptr<HostedCollection> take_out(CollectionId id);
   /// Keeps a removed collection until the coroutines of its elements are done.
-  void keep_ending(std::unique_ptr<HostedCollection> collection, EpochId epoch);
+  void keep_ending(std::unique_ptr<HostedCollection> collection, Counted end);
   struct Ending {
     std::unique_ptr<HostedCollection> collection;
-    EpochId epoch{};  ///< the epoch that waits for the end
+    Counted end;  ///< the epoch of the end waits for it
   };
   [[nodiscard]] Ending take_ending(CollectionId id);
   [[nodiscard]] CollectionId new_collection_id(LateMessages late = LateMessages::counted);

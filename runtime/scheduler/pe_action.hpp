@@ -1,5 +1,5 @@
-// Messages between PEs that do not involve chares: a handler function of (Pe&, Payload&&), known by
-// its name, and its payload.
+// Messages between PEs that do not involve chares: a handler function of (Pe&, Payload&&) or, if
+// they count in their epoch, (Pe&, Payload&&, Counted); it is known by its name.
 #pragma once
 
 #include "runtime/scheduler/message.hpp"
@@ -7,24 +7,19 @@
 
 namespace tess::detail {
 
-template <class F>
-struct PeHandler;
-template <class P>
-struct PeHandler<void (*)(Pe&, P&&)> {
-  using Payload = P;
-};
-
 /// The action that passes its payload to `Handler`.
 template <auto Handler>
 struct PeAction {
-  using Payload = typename PeHandler<decltype(Handler)>::Payload;
+  using Of = HandlerType<decltype(Handler)>;
+  using Payload = typename Of::Payload;
   using Held = Message<Payload>;
 
   static void run(Pe& pe, Envelope* envelope) {
     auto* message = static_cast<Held*>(envelope);
     Payload payload = std::move(message->payload);
+    const EpochId epoch = envelope->epoch;
     Held::destroy(envelope);
-    Handler(pe, std::move(payload));
+    Of::template call<Handler>(pe, epoch, pe, std::move(payload));
   }
   static inline const Action action{naming::name_of<Handler>(),
                                     &run,
@@ -40,10 +35,20 @@ auto* make_message(Pe& pe, typename PeAction<Handler>::Payload payload) {
   return PeAction<Handler>::Held::make(pe, PeAction<Handler>::action, std::move(payload));
 }
 
-/// Sends a payload to a handler on a PE. It counts as a hop of epoch 0 and for no other epoch.
+/// The same, ready to be sent in an epoch, in which it counts if the handler takes a Counted.
+template <auto Handler>
+auto* make_message_in(Pe& pe, EpochId epoch, typename PeAction<Handler>::Payload payload) {
+  auto* message = pe.stamp(make_message<Handler>(pe, std::move(payload)));
+  message->epoch = epoch;
+  if constexpr (PeAction<Handler>::Of::counts) pe.count(*message);
+  return message;
+}
+
+/// Sends a payload to a handler on a PE. It counts as a hop of epoch 0 and, if the handler takes a
+/// Counted, in the current epoch.
 template <auto Handler>
 void send_system(Pe& pe, PeId to, typename PeAction<Handler>::Payload payload) {
-  pe.send(to, pe.stamp(make_message<Handler>(pe, std::move(payload))));
+  pe.send(to, make_message_in<Handler>(pe, pe.context().epoch, std::move(payload)));
 }
 
 /// The same, but not counted in epoch 0 either: for messages that measure epoch 0 or end the run.

@@ -52,7 +52,8 @@ Time after_now(Pe& pe, Time delay) {
 
 struct Timers::Tables {
   struct Once {
-    EpochId epoch;
+    Counted counted;
+    RunHold hold;
     std::uint32_t led_by = 0;  // the broadcast that led to the timer, as in Context
     CollectionId led_in;
     Time due{0};
@@ -126,10 +127,10 @@ std::uint64_t Timers::after(Time delay, Call call) {
   TESS_CHECK(delay >= Time(0), "a timer cannot wait for ", delay.count(), " ns");
   const Context& context = pe_.context();
   const Time due = after_now(pe_, delay);
-  tables_->once.emplace(
-      ++n_made_, Tables::Once{context.epoch, context.led_by, context.led_in, due, std::move(call)});
-  pe_.completion().sent(context.epoch);
-  pe_.completion().hop_sent();
+  Completion& completion = pe_.completion();
+  tables_->once.emplace(++n_made_,
+                        Tables::Once{Counted::sent(completion, context.epoch), RunHold(completion),
+                                     context.led_by, context.led_in, due, std::move(call)});
   wait(n_made_, due, pe_.stamp(make_message<&timer_call>(pe_, Due{n_made_})));
   return n_made_;
 }
@@ -142,14 +143,10 @@ void Timers::on_due(std::uint64_t timer) {
   pe_.context().led_by = due.led_by;
   pe_.context().led_in = due.led_in;
   due.call();
-  pe_.completion().processed(due.epoch);
-  pe_.completion().hop_processed();
 }
 
 void Timers::cancel(std::uint64_t timer) {
   if (const auto at = tables_->once.find(timer); at != tables_->once.end()) {
-    pe_.completion().processed(at->second.epoch);
-    pe_.completion().hop_processed();
     stop_waiting(timer, at->second.due);
     tables_->once.erase(at);
   } else if (const auto tick = tables_->periodic.find(timer); tick != tables_->periodic.end()) {

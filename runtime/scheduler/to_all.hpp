@@ -20,21 +20,18 @@ struct ToAll {
 };
 
 template <auto Handler>
-void to_all_arrives(Pe& pe, ToAll<typename PeAction<Handler>::Payload>&& m) {
+void to_all_arrives(Pe& pe, ToAll<typename PeAction<Handler>::Payload>&& m, Counted counted) {
   const SpanningTree tree(pe.id(), m.root, pe.n_pes());
-  for (std::int32_t slot = 0; slot < tree.n_children(); ++slot) {
-    pe.completion().sent(m.payload.epoch);
+  for (std::int32_t slot = 0; slot < tree.n_children(); ++slot)
     send_system<&to_all_arrives<Handler>>(pe, tree.child(slot), m);
-  }
-  Handler(pe, std::move(m.payload));
+  Handler(pe, std::move(m.payload), std::move(counted));
 }
 
-/// Passes a payload to the handler on all PEs; here at once. Each counts as sent in
-/// `payload.epoch`, and the handler counts it as processed.
+/// Passes a payload to the handler on all PEs; here at once. Each counts in the current epoch.
 template <auto Handler>
 void send_to_all(Pe& pe, typename PeAction<Handler>::Payload payload) {
-  pe.completion().sent(payload.epoch);
-  to_all_arrives<Handler>(pe, {pe.id(), std::move(payload)});
+  to_all_arrives<Handler>(pe, {pe.id(), std::move(payload)},
+                          Counted::sent(pe.completion(), pe.context().epoch));
 }
 
 }  // namespace tess::detail

@@ -14,23 +14,20 @@ namespace {
 struct Attach {
   CollectionId balancer{};
   CollectionId array{};
-  EpochId epoch{};
 
   /// The array or the exchange has ended: then the balancer ends, too.
-  [[nodiscard]] std::uint64_t drop(Pe& pe) const {
+  [[nodiscard]] std::uint64_t drop(Pe& /*pe*/) const {
     if (Balancer* member = GroupProxy<Balancer>(balancer).local_or_null(); member != nullptr)
       member->cannot_attach();
-    pe.completion().processed(epoch);
     return 0;
   }
 };
-void attach_arrives(Collection& array, Attach&& m) {
+void attach_arrives(Collection& array, Attach&& m, Counted /*counted*/) {
   // The balancer may have ended: then the array's end is under way to this PE.
   if (Balancer* member = GroupProxy<Balancer>(m.balancer).local_or_null(); member != nullptr)
     member->attach(array);
-  array.pe().completion().processed(m.epoch);
 }
-void exchange_known(Collection& exchange, Attach&& m) {
+void exchange_known(Collection& exchange, Attach&& m, Counted /*counted*/) {
   Pe& pe = exchange.pe();
   send_to_collection<&attach_arrives>(pe, m.array, pe.id(), m);
 }
@@ -60,8 +57,7 @@ Balancer::Balancer(const Plan& plan)
   if (plan_.when == BalanceWhen::periodic) constructing_collection(pe)->expedite_reductions();
   // Immediately if the array is known: messages sent after start_balancing() arrive later.
   if (Collection* array = find_collection(pe, plan_.array); array != nullptr) watch(*array);
-  const Attach attach{group().id(), plan_.array, plan_.epoch};
-  pe.completion().sent(plan_.epoch);
+  const Attach attach{group().id(), plan_.array};
   if (plan_.distributed == DistributedStrategy::none) {
     send_to_collection<&attach_arrives>(pe, plan_.array, pe.id(), attach);
   } else {
@@ -203,10 +199,8 @@ void Balancer::at_sync(Element& element) {
 }
 
 void Balancer::pass(Element& element) {
-  SyncState& sync = Collection::record_of(element)->sync;
-  if (sync.phase != SyncPhase::waits) return;
-  sync.phase = SyncPhase::resumes;
-  array_->resume(element);
+  const SyncState& sync = Collection::record_of(element)->sync;
+  if (sync.phase == SyncPhase::waits) array_->resume(element);
 }
 
 Task Balancer::reached(std::uint64_t /*n_elements*/) {
@@ -492,9 +486,9 @@ GroupProxy<Balancer> start(CollectionId array, const BalanceOptions& options, St
       users ? DistributedStrategy::none : distributed_strategy(options.strategy);
   GroupProxy<Exchange> exchange;
   if (distributed != DistributedStrategy::none) exchange = create_group<Exchange>();
-  const GroupProxy<Balancer> group = create_group<Balancer>(Balancer::Plan{
-      array, pe.id(), pe.context().epoch, options.when, options.period.count(), passes,
-      options.speeds, options.memory_limit_bytes, distributed, exchange, options.indices});
+  const GroupProxy<Balancer> group = create_group<Balancer>(
+      Balancer::Plan{array, pe.id(), options.when, options.period.count(), passes, options.speeds,
+                     options.memory_limit_bytes, distributed, exchange, options.indices});
   group.local().coordinate(std::make_unique<Coordinator>(options, std::move(users)));
   return group;
 }

@@ -41,7 +41,6 @@ class Balancer final : public Group<Balancer>, private ElementWatcher {
   struct Plan {
     CollectionId array{};
     PeId coordinator{};
-    EpochId epoch{};  ///< the epoch in which balancing starts
     BalanceWhen when = BalanceWhen::at_sync;
     std::int64_t period_ns = 0;
     bool passes = false;         ///< strategy none, or periodic: at_sync() continues immediately

@@ -65,7 +65,7 @@ Barrier::Entry Barrier::entered(Element& element) {
     if (sync.next == 0) {
       at_sync(element);  // it began to wait on a PE where balancing had not started
     } else if (sync.next <= n_resumed_) {
-      wake(element);
+      array_->resume(element);
     }
   }
   return first_here && !created ? Entry::late : Entry::usual;
@@ -124,13 +124,8 @@ void Barrier::resume(std::uint32_t round) {
     if (element == nullptr) continue;
     const SyncState& sync = sync_of(*element);
     const bool waits = sync.entry == SyncEntry::member && sync.phase == SyncPhase::waits;
-    if (waits && sync.next <= n_resumed_) wake(*element);
+    if (waits && sync.next <= n_resumed_) array_->resume(*element);
   }
-}
-
-void Barrier::wake(Element& element) {
-  sync_of(element).phase = SyncPhase::resumes;
-  array_->resume(element);
 }
 
 std::string Barrier::missing_before(std::uint32_t round) const {

@@ -59,7 +59,6 @@ class Barrier {
  private:
   void join(SyncState& sync, std::uint32_t round);
   void contribute(SyncState& sync);
-  void wake(Element& element);
   [[nodiscard]] std::string missing_before(std::uint32_t round) const;
 
   const Callback<std::uint64_t> reached_;

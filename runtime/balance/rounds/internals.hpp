@@ -14,6 +14,7 @@ namespace tess::balance {
 
 using detail::BalanceRecord;
 using detail::Collection;
+using detail::Counted;
 using detail::Element;
 using detail::element_text;
 using detail::ElementWatcher;

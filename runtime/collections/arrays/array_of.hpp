@@ -124,8 +124,13 @@ class ArrayOf : public Collection {
     return record->state() == IndexState::here ? pe_.id() : record->pe();
   }
 
-  /// A user's message is sent from here.
+  /// A new message is sent from here. Its epoch waits for it.
   void post(CallMessage* message) {
+    Counted::departs(pe_.completion(), message->epoch);
+    post_counted(message);
+  }
+  /// The same for a message that is counted already.
+  void post_counted(CallMessage* message) {
     Record* record = table_.find(message->index);
     if (record != nullptr && record->state() == IndexState::here) [[likely]] {
       message->receiver = record->element();
@@ -380,11 +385,11 @@ class ArrayOf : public Collection {
 template <class Index>
 inline void ArrayOf<Index>::execute(Indexed& element, CallMessage* message) {
   const auto& action = static_cast<const ElementAction<Index>&>(*message->action);
-  const EpochId epoch = message->epoch;
+  Counted counted(pe_.completion(), message->epoch);
   if (action.invoke == nullptr) [[unlikely]] {
     refuse_insertion(message);
   } else {
-    const ElementScope scope(pe_, element, message->action, epoch, message->led_by);
+    const ElementScope scope(pe_, element, message->action, counted.epoch(), message->led_by);
     try {
       action.invoke(element, *message);
     } catch (...) {
@@ -394,7 +399,7 @@ inline void ArrayOf<Index>::execute(Indexed& element, CallMessage* message) {
     }
     discard(message);
   }
-  pe_.completion().processed(epoch);
+  counted.done();
 }
 
 // The usual types of indices are compiled once, in array_of.cpp.

@@ -49,6 +49,7 @@ void Arrival<Index>::run(Pe& pe, Envelope* envelope) {
     pe.keep_early(arrival->collection, envelope, &ArrayOf<Index>::drop_arrival);
     return;
   }
+  const Counted counted(pe.completion(), arrival->epoch);
   static_cast<ArrayOf<Index>*>(collection)->take_in(*arrival);
   destroy(envelope);
 }

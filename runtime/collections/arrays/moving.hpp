@@ -24,7 +24,6 @@ void ArrayOf<Index>::depart(Indexed& element, PeId to) {
                        version);
   broadcasts().left(element.state_.seen_broadcast);
   ++pe_.statistics().migrations;
-  pe_.completion().sent(pe_.context().epoch);
   ship(element, to, leave_sections(element));
   reductions().advance();
 }
@@ -35,6 +34,7 @@ void ArrayOf<Index>::ship(Indexed& element, PeId to, Memberships&& memberships) 
   TESS_CHECK(action != nullptr, name(),
              " cannot migrate: it needs a default constructor and a public serialize()");
   auto* arrival = pe_.stamp(new Arrival<Index>());
+  pe_.count(*arrival);
   arrival->action = action;
   arrival->collection = id();
   arrival->from = pe_.id();
@@ -87,15 +87,15 @@ void ArrayOf<Index>::take_in(Arrival<Index>& arrival) {
 template <class Index>
 std::uint64_t ArrayOf<Index>::drop_arrival(Pe& pe, Envelope& envelope) {
   auto& arrival = static_cast<Arrival<Index>&>(envelope);
+  const Counted counted(pe.completion(), arrival.epoch);
   if (arrival.element != nullptr) {
-    drop_record(pe, *arrival.element);
+    end_wait(pe, *arrival.element);
   } else {
     Reader ar(std::span<const std::byte>(arrival.state.data(), arrival.state.size()));
     (void)ar.template take<Index>();
     drop_record(pe, ar);
   }
   tess::detail::drop(pe, arrival.memberships);
-  pe.completion().processed(arrival.epoch);
   if (arrival.element == nullptr) return 0;
   // The part of the array that the element left may have been freed, but its destructor may call
   // array().
@@ -115,7 +115,6 @@ std::uint64_t ArrayOf<Index>::packed_bytes(Element& element) const {
 template <class Index>
 void ArrayOf<Index>::add_arrived(Indexed* element, PeId from, Memberships&& memberships) {
   const Index index = element->index_;
-  const EpochId epoch = pe_.context().epoch;
   const std::uint64_t seen = element->state_.seen_broadcast;
   const Version version = element->state_.version;
   table_.at(index).set_here(*element);
@@ -137,7 +136,6 @@ void ArrayOf<Index>::add_arrived(Indexed* element, PeId from, Memberships&& memb
   } else {
     send_to_collection<&move_report_arrives, Traffic::location>(*this, home(index), report);
   }
-  pe_.completion().processed(epoch);
   release(*element);
   settle(*element);
 }
@@ -223,7 +221,7 @@ void ArrayOf<Index>::destroy_here(Indexed& element) {
   const std::uint32_t next = element.state_.next_reduction;
   unlist(element);
   ++n_departures_;
-  end_wait(element);
+  end_wait(pe_, element);
   end_memberships(element);
   if (watcher() != nullptr) [[unlikely]] {
     watcher()->destroyed(element);

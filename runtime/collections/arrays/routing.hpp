@@ -23,10 +23,10 @@ void ArrayOf<Index>::run_message(Pe& pe, Envelope* envelope) {
 
 template <class Index>
 std::uint64_t ArrayOf<Index>::drop_message(Pe& pe, Envelope& envelope) {
+  const Counted counted(pe.completion(), envelope.epoch);
   const auto& action = static_cast<const ElementAction<Index>&>(*envelope.action);
   if (action.undelivered != nullptr)
     action.undelivered(pe, static_cast<ElementMessage<Index>&>(envelope));
-  pe.completion().processed(envelope.epoch);
   return action.n_dead_letters();
 }
 
@@ -187,12 +187,8 @@ void ArrayOf<Index>::at_home(CallMessage* message, const Record* record) {
 
 template <class Index>
 void ArrayOf<Index>::dead_letter(CallMessage* message) {
-  const EpochId epoch = message->epoch;
-  const auto& action = static_cast<const ElementAction<Index>&>(*message->action);
-  if (action.undelivered != nullptr) action.undelivered(pe_, *message);
-  pe_.statistics().dead_letters += action.n_dead_letters();
+  pe_.statistics().dead_letters += drop_message(pe_, *message);
   discard(message);
-  pe_.completion().processed(epoch);
 }
 
 template <class Index>
@@ -276,9 +272,8 @@ void ArrayOf<Index>::grant(const Index& granted, Version version) {
   std::vector<CallMessage*> messages = unpark(index, Parked::pending);
   if (insert != nullptr) {
     std::erase(messages, insert);
-    const EpochId epoch = insert->epoch;
+    const Counted counted(pe_.completion(), insert->epoch);
     discard(insert);
-    pe_.completion().processed(epoch);
   }
   reroute(std::move(messages));
   reroute(unpark(index, Parked::waiting));

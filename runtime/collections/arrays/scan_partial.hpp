@@ -71,7 +71,7 @@ class ScanOfPe final : public KeptScan {
     typename Types::Key key;
     T value;
     std::optional<T> first;  ///< of an exclusive scan
-    EpochId epoch;
+    Counted counted;
     Callback<typename Types::Result> target;
   };
 
@@ -105,7 +105,7 @@ class ScanOfPe final : public KeptScan {
       Entry& entry = entries_[i];
       if (begins_run(i)) sum = std::move(before[run++]);
       std::optional<T> whole = sum ? combined(op, *sum, entry.value) : entry.value;
-      const DeliveryScope scope(pe, entry.epoch);
+      const DeliveryScope scope(pe, entry.counted.epoch());
       if (!entry.first) {
         entry.target(finished(op, *whole));
       } else if (sum) {
@@ -113,14 +113,9 @@ class ScanOfPe final : public KeptScan {
       } else {
         entry.target(finished(op, std::move(*entry.first)));
       }
-      pe.completion().processed(entry.epoch);
       sum = std::move(whole);
     }
     pe.context().element = contributor;
-  }
-
-  void drop(Completion& completion) const override {
-    for (const Entry& entry : entries_) completion.processed(entry.epoch);
   }
 
  private:
@@ -260,9 +255,8 @@ void contribute_to_scan(const Key& key, const ToArray& to, const Op& scan_op, T 
   check_target(to.element, target);
   Pe& pe = to.collection.pe();
   const typename Types::Op& op = ScanOp<Op>::of(scan_op);
-  const EpochId epoch = pe.context().epoch;
-  pe.completion().sent(epoch);
-  typename Scan::Here::Entry entry{key, std::move(value), std::move(first), epoch, target};
+  typename Scan::Here::Entry entry{key, std::move(value), std::move(first),
+                                   Counted::sent(pe.completion(), pe.context().epoch), target};
   if (Partial* open = to.open_sum(Scan::its_kind()); open != nullptr) {
     static_cast<Scan*>(open)->add(to.collection, op, std::move(entry));
     to.contributed();

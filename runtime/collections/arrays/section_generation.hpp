@@ -31,7 +31,7 @@ struct SectionGeneration {
   std::uint64_t n_done = 0;
   bool retired = false;
   std::uint64_t n_calls = 0;       // once retired
-  std::vector<SectionCall> early;  // multicasts that arrived before Setup
+  std::vector<WaitingCall> early;  // multicasts that arrived before Setup
 
   [[nodiscard]] bool finished() const { return known && retired && n_done == n_calls; }
   [[nodiscard]] std::vector<std::uint32_t> ordinals() const {

@@ -48,8 +48,12 @@ class SectionListsOf final : public SectionLists {
 
   using Create = SectionCreate<Index>;
   using Start = SectionStart;
-  static void create_arrives(Array& array, Create&& m) { of(array).on_create(std::move(m)); }
-  static void start_arrives(Array& array, Start&& m) { of(array).on_start(std::move(m)); }
+  static void create_arrives(Array& array, Create&& m, Counted counted) {
+    of(array).on_create(std::move(m), counted.epoch());
+  }
+  static void start_arrives(Array& array, Start&& m, Counted counted) {
+    of(array).on_start(std::move(m), std::move(counted));
+  }
 
   void send_again(Element& element, SectionId section, const SectionCall& call) override {
     send_token(section, array_.index_of(element), call);
@@ -73,8 +77,8 @@ class SectionListsOf final : public SectionLists {
   using PeList = SectionPeList<Index>;
   using Setup = SectionSetup<Index>;
   static void setup_arrives(Array& array, Setup&& m) { of(array).on_setup(std::move(m)); }
-  static void multicast_arrives(Array& array, SectionMulticast&& m) {
-    of(array).on_multicast(std::move(m));
+  static void multicast_arrives(Array& array, SectionMulticast&& m, Counted counted) {
+    of(array).on_multicast(std::move(m), std::move(counted));
   }
   static void retire_arrives(Array& array, SectionRetire&& m) { of(array).on_retire(m); }
   static void seen_arrives(Array& array, SectionSeen&& m) { of(array).on_seen(m); }
@@ -109,8 +113,8 @@ class SectionListsOf final : public SectionLists {
     std::uint64_t last_number = 0;
     std::uint64_t generation = 0;
     std::uint64_t n_calls = 0;         // of this generation
-    std::vector<SectionCall> kept;     // for members that have not joined
-    std::vector<SectionCall> waiting;  // calls that arrived before the list
+    std::vector<WaitingCall> kept;     // for members that have not joined
+    std::vector<WaitingCall> waiting;  // calls that arrived before the list
   };
   struct Lists {
     Root root;  // used on the root
@@ -118,25 +122,25 @@ class SectionListsOf final : public SectionLists {
   };
 
   [[nodiscard]] Sections& sections() { return array_.sections(); }
-  [[nodiscard]] Completion& completion() { return array_.pe().completion(); }
   /// The lists of a section; null once it has ended here.
   [[nodiscard]] Lists* lists(SectionId id) {
     return sections().part(id) == nullptr ? nullptr : &lists_[id.value];
   }
 
-  void on_create(Create&& create);
-  void on_start(Start&& start);
+  void on_create(Create&& create, EpochId epoch);
+  void on_start(Start&& start, Counted counted);
   void on_setup(Setup&& setup);
-  void on_multicast(SectionMulticast&& multicast);
+  void on_multicast(SectionMulticast&& multicast, Counted counted);
   void on_retire(const SectionRetire& retire);
   void on_seen(const SectionSeen& seen);
   void on_lost(const SectionLost& lost);
 
-  void multicast(SectionId id, Root& root, SectionCall&& call);
+  /// A call gets its number.
+  void multicast(SectionId id, Root& root, WaitingCall&& waiting);
   void make_lists(SectionId id, Root& root);
   void deliver(SectionId id, std::uint64_t number, const Generation& generation,
                const SectionCall& call);
-  /// Sends a multicast to one member as an ordinary message, which is counted as sent.
+  /// Sends a multicast to one member as an ordinary message.
   void send_token(SectionId id, const Index& index, const SectionCall& call);
   static void report_place(Array& array, SectionId id, std::uint32_t ordinal, Element& element);
   void finish(Lists& lists, std::uint64_t generation);
@@ -204,67 +208,53 @@ void SectionListsOf<Index>::send_token(SectionId id, const Index& index, const S
 }
 
 template <class Index>
-void SectionListsOf<Index>::on_create(Create&& create) {
+void SectionListsOf<Index>::on_create(Create&& create, EpochId epoch) {
   Lists* const lists = this->lists(create.section);
-  if (lists == nullptr) {
-    completion().processed(create.epoch);
-    return;
-  }
+  if (lists == nullptr) return;
   Root& root = lists->root;
   SectionPart& part = *sections().part(create.section);
   part.total.begin(create.indices.size());
   root.roster.create(create.indices.size());
   root.indices = std::move(create.indices);
-  root.epoch = create.epoch;
+  root.epoch = epoch;
   for (std::uint32_t ordinal = 0; const Index& index : root.indices) {
-    completion().sent(create.epoch);
     auto* join =
         JoinCall::make(array_.pe(), array_.id(), index, SectionJoin{create.section, ordinal++});
-    join->epoch = create.epoch;
     join->demand = Demand::member;
     array_.post(join);
   }
-  for (SectionCall& call : std::exchange(root.waiting, {}))
-    multicast(create.section, root, std::move(call));
-  completion().processed(create.epoch);
+  for (WaitingCall& waiting : std::exchange(root.waiting, {}))
+    multicast(create.section, root, std::move(waiting));
   part.deliver_complete();
 }
 
 template <class Index>
-void SectionListsOf<Index>::on_start(Start&& start) {
+void SectionListsOf<Index>::on_start(Start&& start, Counted counted) {
   Lists* const lists = this->lists(start.section);
   if (lists == nullptr) {
     array_.pe().statistics().dead_letters += start.drop(array_.pe());
   } else if (!lists->root.roster.created()) {
-    lists->root.waiting.push_back(std::move(start.call));
+    lists->root.waiting.push_back({std::move(start.call), std::move(counted)});
   } else {
-    multicast(start.section, lists->root, std::move(start.call));
+    multicast(start.section, lists->root, {std::move(start.call), std::move(counted)});
   }
 }
 
-/// A call that is counted as sent gets its number.
 template <class Index>
-void SectionListsOf<Index>::multicast(SectionId id, Root& root, SectionCall&& call) {
+void SectionListsOf<Index>::multicast(SectionId id, Root& root, WaitingCall&& waiting) {
+  auto& [call, counted] = waiting;
   if (root.roster.wants_lists()) make_lists(id, root);
   call.numbered.number = ++root.last_number;
-  const EpochId epoch = call.numbered.epoch;
-  if (const std::size_t n = root.roster.n_unjoined(); n > 0) {
-    for (std::size_t i = 0; i < n; ++i) completion().sent(epoch);
-    root.kept.push_back(call);
-  }
+  if (root.roster.n_unjoined() > 0)
+    root.kept.push_back({call, Counted::sent(array_.pe().completion(), call.numbered.epoch)});
   if (root.roster.any_outside()) {
     for (std::size_t ordinal = 0; ordinal < root.indices.size(); ++ordinal) {
-      if (!root.roster.members()[ordinal].outside()) continue;
-      completion().sent(epoch);
-      send_token(id, root.indices[ordinal], call);
+      if (root.roster.members()[ordinal].outside()) send_token(id, root.indices[ordinal], call);
     }
   }
-  if (root.generation == 0) {
-    completion().processed(epoch);
-    return;
-  }
+  if (root.generation == 0) return;
   ++root.n_calls;
-  on_multicast(SectionMulticast{id, root.generation, std::move(call)});
+  on_multicast(SectionMulticast{id, root.generation, std::move(call)}, std::move(counted));
 }
 
 template <class Index>
@@ -310,45 +300,36 @@ void SectionListsOf<Index>::on_setup(Setup&& setup) {
     for (const PeId child : generation.children)
       send_to_collection<&retire_arrives>(
           array_, child, SectionRetire{setup.section, setup.generation, generation.n_calls});
-  for (SectionCall& call : std::exchange(generation.early, {}))
-    on_multicast(SectionMulticast{setup.section, setup.generation, std::move(call)});
+  for (auto& [call, counted] : std::exchange(generation.early, {}))
+    on_multicast(SectionMulticast{setup.section, setup.generation, std::move(call)},
+                 std::move(counted));
   if (const auto at = lists->generations.find(setup.generation); at != lists->generations.end())
     finish(*lists, setup.generation);
 }
 
 template <class Index>
-void SectionListsOf<Index>::on_multicast(SectionMulticast&& multicast) {
+void SectionListsOf<Index>::on_multicast(SectionMulticast&& multicast, Counted counted) {
   Lists* const lists = this->lists(multicast.section);
-  const EpochId epoch = multicast.call.numbered.epoch;
-  if (lists == nullptr) {
-    completion().processed(epoch);
-    return;
-  }
+  if (lists == nullptr) return;
   Generation& generation = lists->generations[multicast.generation];
   if (!generation.known) {
-    generation.early.push_back(std::move(multicast.call));
+    generation.early.push_back({std::move(multicast.call), std::move(counted)});
     return;
   }
-  for (const PeId child : generation.children) {
-    completion().sent(epoch);
+  const DeliveryScope scope(array_.pe(), counted.epoch());  // it may have waited here
+  for (const PeId child : generation.children)
     send_to_collection<&multicast_arrives>(array_, child, multicast);
-  }
   if (!generation.children.empty())
     array_.pe().flush();  // other processes do not wait for the local members
   deliver(multicast.section, multicast.generation, generation, multicast.call);
   ++generation.n_done;
   finish(*lists, multicast.generation);
-  completion().processed(epoch);
 }
 
 template <class Index>
 void SectionListsOf<Index>::deliver(SectionId id, std::uint64_t number,
                                     const Generation& generation, const SectionCall& call) {
   SectionPart& part = *sections().part(id);
-  const auto forward = [&](const Entry& entry) {
-    completion().sent(call.numbered.epoch);
-    send_token(id, entry.index, call);
-  };
   if (number == part.generation && part.n_listed == generation.entries.size()) {
     sections().deliver_listed(part, call);
     return;
@@ -358,7 +339,7 @@ void SectionListsOf<Index>::deliver(SectionId id, std::uint64_t number,
     if (part.slots.contains(entry.ordinal)) {
       here.push_back(&entry);
     } else {
-      forward(entry);
+      send_token(id, entry.index, call);
     }
   }
   const Sections::Run run(sections(), part, call);
@@ -394,7 +375,7 @@ void SectionListsOf<Index>::on_seen(const SectionSeen& seen) {
   Root& root = lists->root;
   if (!root.roster.seen(seen.ordinal, seen.place)) return;
   const Index& index = root.indices[seen.ordinal];
-  for (const SectionCall& call : root.kept) send_token(seen.section, index, call);
+  for (const WaitingCall& kept : root.kept) send_token(seen.section, index, kept.call);
   if (root.roster.n_unjoined() == 0) root.kept.clear();
 }
 
@@ -412,28 +393,18 @@ template <class Index>
 void SectionListsOf<Index>::gone(SectionId section, std::uint32_t ordinal) {
   Root& root = lists_.at(section.value).root;
   if (!root.roster.gone(ordinal)) return;
-  // The multicasts that are kept for it are not sent.
-  for (const SectionCall& call : root.kept) completion().processed(call.numbered.epoch);
+  // Those that are kept are not sent to it.
   if (root.roster.n_unjoined() == 0) root.kept.clear();
 }
 
 template <class Index>
 void SectionListsOf<Index>::end(SectionId section) {
-  const auto at = lists_.find(section.value);
-  if (at == lists_.end()) return;
-  const Root& root = at->second.root;
-  for (const SectionCall& call : root.kept)
-    for (std::size_t i = 0; i < root.roster.n_unjoined(); ++i)
-      completion().processed(call.numbered.epoch);
-  for (const SectionCall& call : root.waiting) completion().processed(call.numbered.epoch);
-  for (const auto& [number, generation] : at->second.generations)
-    for (const SectionCall& call : generation.early) completion().processed(call.numbered.epoch);
-  lists_.erase(at);
+  lists_.erase(section.value);
 }
 
 template <class Index>
 void SectionListsOf<Index>::end_all() {
-  while (!lists_.empty()) end(SectionId{lists_.begin()->first});
+  lists_.clear();
 }
 
 template <class Index>
@@ -455,10 +426,11 @@ std::vector<SectionId> SectionListsOf<Index>::save(Writer& ar) const {
 
 template <class Index>
 void SectionListsOf<Index>::restore(Reader& ar) {
+  const DeliveryScope scope(array_.pe(), EpochId{});  // no epoch waits for the members
   for (auto n = ar.take<std::uint64_t>(); n > 0; --n) {
     const auto id = ar.take<SectionId>();
     send_to_collection<&create_arrives>(array_, sections().root(id),
-                                        Create{id, EpochId{}, ar.take<std::vector<Index>>()});
+                                        Create{id, ar.take<std::vector<Index>>()});
   }
 }
 

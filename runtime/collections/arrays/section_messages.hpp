@@ -15,15 +15,10 @@ namespace tess::detail {
 template <class Index>
 struct SectionCreate {
   SectionId section;
-  EpochId epoch;
   std::vector<Index> indices;
   template <class Ar>
   void serialize(Ar& ar) {
-    ar(section, epoch, indices);
-  }
-  std::uint64_t drop(Pe& pe) const {
-    pe.completion().processed(epoch);
-    return 0;
+    ar(section, indices);
   }
 };
 struct SectionStart {

@@ -1,6 +1,6 @@
 #include "runtime/collections/reductions/gathered.hpp"
 
-#include "runtime/completion/completion.hpp"
+#include "runtime/completion/counted.hpp"
 #include "runtime/core/algorithm.hpp"
 #include "runtime/core/check.hpp"
 #include "runtime/core/type_name.hpp"
@@ -11,7 +11,7 @@ namespace tess::detail {
 
 void settle(Completion& completion, const std::vector<EpochShare>& shares) {
   for (const EpochShare& share : shares)
-    for (std::uint64_t k = 0; k < share.n; ++k) completion.processed(share.epoch);
+    for (std::uint64_t k = 0; k < share.n; ++k) (void)Counted(completion, share.epoch);
 }
 
 void Gathered::merge_value(std::unique_ptr<Partial> more) {
@@ -38,7 +38,8 @@ void Gathered::merge_share(const EpochShare& more) {
   }
 }
 
-void Gathered::add(EpochId epoch, std::unique_ptr<Partial> more) {
+void Gathered::add(Completion& completion, EpochId epoch, std::unique_ptr<Partial> more) {
+  Counted::departs(completion, epoch);
   ++n;
   merge_value(std::move(more));
   merge_share({epoch, 1});

@@ -27,8 +27,8 @@ struct Gathered {
   std::vector<EpochShare> shares;
   const PartialKind* kind = nullptr;  ///< of the value, once something was merged here
 
-  /// Adds a contribution; a value of another kind is misuse.
-  void add(EpochId epoch, std::unique_ptr<Partial> more);
+  /// Adds a contribution, which counts as sent until settle(); a value of another kind is misuse.
+  void add(Completion& completion, EpochId epoch, std::unique_ptr<Partial> more);
   /// Merges more contributions.
   void merge(Gathered&& more);
   /// True if a contribution of this kind and epoch can be added in place.

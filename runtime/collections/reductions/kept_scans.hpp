@@ -9,17 +9,13 @@
 
 namespace tess::detail {
 
-class Completion;
-
-/// Contributions from one PE to one scan.
+/// Contributions from one PE to one scan. They count as processed in their epochs when it ends.
 class KeptScan {
  public:
   KeptScan() = default;
   KeptScan(const KeptScan&) = delete;
   KeptScan& operator=(const KeptScan&) = delete;
   virtual ~KeptScan() = default;
-  /// The collection ends: counts the contributions as processed in their epochs.
-  virtual void drop(Completion& completion) const = 0;
 };
 
 class KeptScans {
@@ -31,10 +27,6 @@ class KeptScans {
   /// Takes a scan out of the list; there must be one of this number.
   [[nodiscard]] std::unique_ptr<KeptScan> take(std::uint64_t number) {
     return std::move(kept_.extract(number).mapped());
-  }
-  void drop(Completion& completion) {
-    for (const auto& [number, scan] : kept_) scan->drop(completion);
-    kept_.clear();
   }
 
  private:

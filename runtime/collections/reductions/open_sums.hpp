@@ -7,6 +7,7 @@
 #pragma once
 
 #include "runtime/collections/reductions/gathered.hpp"
+#include "runtime/completion/counted.hpp"
 
 #include <cstdint>
 #include <map>
@@ -38,9 +39,10 @@ class OpenSums {
   }
 
   /// Adds a contribution to a number.
-  Sum& add(std::uint32_t number, EpochId epoch, std::unique_ptr<Partial> value) {
+  Sum& add(Completion& completion, std::uint32_t number, EpochId epoch,
+           std::unique_ptr<Partial> value) {
     Sum& sum = sums_[number];
-    sum.add(epoch, std::move(value));
+    sum.add(completion, epoch, std::move(value));
     current_ = &sum;
     current_number_ = number;
     return sum;
@@ -53,7 +55,8 @@ class OpenSums {
     return current_->value.held.get();
   }
   /// A contribution was added to open(). Returns the sum.
-  Sum& added() {
+  Sum& added(Completion& completion) {
+    Counted::departs(completion, current_->shares.front().epoch);
     ++current_->shares.front().n;
     ++current_->n;
     return *current_;

@@ -122,8 +122,7 @@ void ReductionTree::leave(std::uint32_t next) {
 }
 
 void ReductionTree::added(std::uint32_t number, const Cause& cause) {
-  Gathering& gathering = gathering_.added();
-  completion_.sent(gathering.shares.front().epoch);
+  Gathering& gathering = gathering_.added(completion_);
   take(number, gathering, cause);
   leave(number);
   enter(number + 1);
@@ -139,19 +138,18 @@ void ReductionTree::contribute(std::uint32_t number, EpochId epoch, std::unique_
 
 void ReductionTree::gather(std::uint32_t number, EpochId epoch, std::unique_ptr<Partial> value,
                            const Cause& cause, Newcomer newcomer, bool named) {
-  completion_.sent(epoch);
   if (number < next_report_) {  // this PE has reported: the element arrived later
     ReductionReport late;
     late.number = number;
     late.late = true;
-    late.sum.add(epoch, std::move(value));
+    late.sum.add(completion_, epoch, std::move(value));
     late.sum.cause = cause;
     late.sum.newcomer = std::move(newcomer);
     late.sum.named = named;
     host_.send(root_, std::move(late));
     return advance();  // the element may be ahead in the next numbers
   }
-  Gathering& gathering = gathering_.add(number, epoch, std::move(value));
+  Gathering& gathering = gathering_.add(completion_, number, epoch, std::move(value));
   gathering.known = true;
   gathering.named = gathering.named || named;
   gathering.note(std::move(newcomer));

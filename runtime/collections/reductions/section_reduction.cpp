@@ -89,16 +89,15 @@ void SectionReduction::advance() {
 
 void SectionReduction::contribute(std::uint32_t number, EpochId epoch,
                                   std::unique_ptr<Partial> value) {
-  completion_.sent(epoch);
   leave(number);
   enter(number + 1);
   if (number < next_report_) {  // this PE has reported: the member arrived later
     Gathered one;
-    one.add(epoch, std::move(value));
+    one.add(completion_, epoch, std::move(value));
     send_to_root(number, std::move(one));
     return;
   }
-  gathering_.add(number, epoch, std::move(value));
+  gathering_.add(completion_, number, epoch, std::move(value));
   if (passed(next_report_)) advance();
 }
 

@@ -85,7 +85,7 @@ class SectionReduction {
     return gathering_.open(number, kind, epoch);
   }
   void added(std::uint32_t number) {
-    completion_.sent(gathering_.added().shares.front().epoch);
+    gathering_.added(completion_);
     leave(number);
     enter(number + 1);
     if (passed(next_report_)) advance();

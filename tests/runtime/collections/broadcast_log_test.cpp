@@ -43,8 +43,7 @@ class Logs {
   Logs(std::int32_t n_pes, std::uint64_t seed) : bag(seed), ledgers(n_pes), root_(any_of(n_pes)) {
     for (std::int32_t i = 0; i < n_pes; ++i) {
       hosts.push_back(std::make_unique<LogHost>(*this, PeId{i}));
-      of_pes.push_back(std::make_unique<BroadcastLog>(*hosts.back(), ledgers.at(PeId{i}), PeId{i},
-                                                      root_, n_pes));
+      of_pes.push_back(std::make_unique<BroadcastLog>(*hosts.back(), PeId{i}, root_, n_pes));
     }
   }
 
@@ -55,14 +54,12 @@ class Logs {
   void start() {
     const PeId from = any_pe();
     const EpochId epoch = Ledgers::epoch(n_started++);
-    ledgers.at(from).sent(epoch);
+    Counted::departs(ledgers.at(from), epoch);
     epochs.push_back(epoch);
     bag.post([this, epoch] {
-      if (ended) {
-        ledgers.at(root_).processed(epoch);
-      } else {
-        log(root_).on_start(NumberedCall{0, epoch, nullptr, 0, n_bytes});
-      }
+      Counted counted(ledgers.at(root_), epoch);
+      if (!ended)
+        log(root_).on_start(NumberedCall{0, epoch, nullptr, 0, n_bytes}, std::move(counted));
     });
   }
   void create(PeId pe) { host(pe).elements.push_back({log(pe).applied()}); }
@@ -128,12 +125,10 @@ class Logs {
 
 void LogHost::send(PeId to, const NumberedCall& call) {
   ++n_held_;
+  Counted::departs(logs_.ledgers.at(here_), call.epoch);
   logs_.bag.post([&logs = logs_, to, call] {
-    if (logs.ended) {
-      logs.ledgers.at(to).processed(call.epoch);
-    } else {
-      logs.log(to).on_call(NumberedCall(call));
-    }
+    Counted counted(logs.ledgers.at(to), call.epoch);
+    if (!logs.ended) logs.log(to).on_call(NumberedCall(call), std::move(counted));
   });
 }
 void LogHost::send(PeId to, const BroadcastSettled& settled) {

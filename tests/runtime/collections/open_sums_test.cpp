@@ -52,18 +52,20 @@ const EpochId first_epoch = Ledgers::epoch(0), second_epoch = Ledgers::epoch(1);
 TEST_CASE(
     "a contribution is added in place to the sum that got the last one, of its kind and epoch",
     "[runtime][collections][open_sums]") {
+  Ledgers ledgers(1);
+  Completion& completion = ledgers.at(PeId{0});
   const PartialKind& kind = Total<0>::its_kind();
   OpenSums<Gathered> sums;
   CHECK(sums.open(3, kind, first_epoch) == nullptr);
-  sums.add(3, first_epoch, number(1));
+  sums.add(completion, 3, first_epoch, number(1));
   CHECK(sums.open(2, kind, first_epoch) == nullptr);
   CHECK(sums.open(3, Total<1>::its_kind(), first_epoch) == nullptr);
   CHECK(sums.open(3, kind, second_epoch) == nullptr);
   Partial* const open = sums.open(3, kind, first_epoch);
   REQUIRE(open != nullptr);
   static_cast<Total<0>*>(open)->value += 2;
-  CHECK(&sums.added() == sums.find(3));
-  sums.add(4, first_epoch, number(7));
+  CHECK(&sums.added(completion) == sums.find(3));
+  sums.add(completion, 4, first_epoch, number(7));
   CHECK(sums.open(3, kind, first_epoch) == nullptr);
   CHECK(sums.open(4, kind, first_epoch) != nullptr);
   CHECK(sums.find(3)->n == 2);
@@ -72,9 +74,11 @@ TEST_CASE(
 }
 
 TEST_CASE("a sum that was taken out is open no longer", "[runtime][collections][open_sums]") {
+  Ledgers ledgers(1);
+  Completion& completion = ledgers.at(PeId{0});
   const PartialKind& kind = Total<0>::its_kind();
   OpenSums<Gathered> sums;
-  sums.add(3, first_epoch, number(1));
+  sums.add(completion, 3, first_epoch, number(1));
   CHECK(sums.take(2).n == 0);  // there is none
   CHECK(sums.open(3, kind, first_epoch) != nullptr);
   CHECK(total_of(sums.take(3)) == 1);
@@ -92,8 +96,7 @@ TEST_CASE("sums that are dropped count as processed in the epochs of their contr
   OpenSums<Gathered> sums;
   for (std::uint32_t i = 0; i < 12; ++i) {
     const EpochId epoch = i % 3 == 0 ? second_epoch : first_epoch;
-    completion.sent(epoch);
-    sums.add(i % 5, epoch, number(1));
+    sums.add(completion, i % 5, epoch, number(1));
   }
   CHECK(ledgers.n_open(first_epoch) == 8);
   CHECK(ledgers.n_open(second_epoch) == 4);
@@ -109,6 +112,8 @@ TEST_CASE("contributions that meet in any order give one sum, with one share per
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
     INFO("seed " << seed);
     Random random(seed);
+    Ledgers ledgers(1);
+    Completion& completion = ledgers.at(PeId{0});
     // Each is in a part of its own, and any two parts merge next; some parts have no contribution.
     std::vector<Gathered> parts(1 + random.below(12));
     std::uint64_t n = 0, n_in_first = 0;
@@ -116,7 +121,7 @@ TEST_CASE("contributions that meet in any order give one sum, with one share per
     for (Gathered& part : parts)
       if (random.chance(0.8)) {
         const bool in_first = random.chance(0.5);
-        part.add(in_first ? first_epoch : second_epoch, number(1 << n));
+        part.add(completion, in_first ? first_epoch : second_epoch, number(1 << n));
         total += 1 << n++;
         n_in_first += in_first ? 1 : 0;
       }
@@ -131,6 +136,7 @@ TEST_CASE("contributions that meet in any order give one sum, with one share per
     REQUIRE(n_in(whole, first_epoch) == n_in_first);
     REQUIRE(n_in(whole, second_epoch) == n - n_in_first);
     REQUIRE(whole.shares.size() <= 2);
+    REQUIRE(ledgers.n_open(first_epoch) == n_in_first);  // until they are settled
     REQUIRE((whole.epoch() == EpochId{}) == (whole.shares.size() != 1));
     if (n != 0) REQUIRE(total_of(whole) == total);
   }

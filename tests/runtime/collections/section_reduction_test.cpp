@@ -220,7 +220,8 @@ void PartHost::arrived(std::uint32_t number, Gathered&& gathered) {
 
 Gathered contributions(std::uint64_t n) {
   Gathered some;
-  some.add(EpochId{}, std::make_unique<Givers>(static_cast<int>(n)));
+  test::Ledger of_none;
+  some.add(of_none.completion, EpochId{}, std::make_unique<Givers>(static_cast<int>(n)));
   some.n = n;
   return some;
 }

@@ -2,12 +2,15 @@
 // one is delivered next. The oracle counts the messages of each epoch that are not done.
 #include "runtime/completion/completion.hpp"
 
+#include "runtime/completion/counted.hpp"
 #include "runtime/core/hash.hpp"
 #include "tests/support/catch.hpp"
 
 #include <map>
 #include <memory>
+#include <utility>
 #include <variant>
+#include <vector>
 
 namespace {
 
@@ -64,7 +67,7 @@ class Network {
   void work(PeId from, Work work) {
     ++n_due;
     ++due_of[work.epoch.value];
-    at(from).sent(work.epoch);
+    Counted::departs(at(from), work.epoch);
     at(from).hop_sent();
     bag.push_back({any_pe(), work});
   }
@@ -100,9 +103,9 @@ class Network {
     return at(pe).run_changed() && at(pe).report_run();
   }
   void deliver(PeId to, const Work& work) {
+    const Counted counted(at(to), work.epoch);
     for (int energy = work.energy; energy > 0; energy /= 2)
       if (random.chance(0.5)) this->work(to, {work.epoch, energy / 2});
-    at(to).processed(work.epoch);
     --n_due;
     --due_of[work.epoch.value];
     at(to).hop_processed();
@@ -230,7 +233,7 @@ TEST_CASE("a PE reports an epoch once until it is answered", "[runtime][completi
   const EpochId epoch = network.at(PeId{0}).open(EpochId{}, [&ended] { ended = true; });
   Completion& other = network.at(PeId{1});
   for (int i = 0; i < 10; ++i) {
-    other.sent(epoch);
+    Counted::departs(other, epoch);
     (void)other.report_epochs();
   }
   REQUIRE(network.bag.size() == 1);
@@ -240,4 +243,96 @@ TEST_CASE("a PE reports an epoch once until it is answered", "[runtime][completi
   REQUIRE(network.bag.size() == 2);
   CHECK(std::get<messages::Report>(network.bag.back().what).counters == Counters{10, 0});
   CHECK_FALSE(ended);
+}
+
+namespace {
+
+/// The Completion of a PE that coordinates no epoch, and what it has counted.
+class Counts {
+ public:
+  [[nodiscard]] Counters of(EpochId epoch) {
+    network_.bag.clear();
+    completion().on(messages::Wave{epoch, PeId{0}, 1});
+    return std::get<messages::Echo>(network_.bag.back().what).sum;
+  }
+  [[nodiscard]] Completion& completion() { return network_.at(PeId{1}); }
+
+ private:
+  Network network_{2, 1};
+};
+
+constexpr EpochId one_epoch{std::uint64_t{1} << 24U}, other_epoch{std::uint64_t{2} << 24U};
+
+}  // namespace
+
+TEST_CASE("a message counts itself: as sent when it is made, as processed when it is gone",
+          "[runtime][completion]") {
+  Counts counts;
+  {
+    const Counted made = Counted::sent(counts.completion(), one_epoch);
+    CHECK(made.epoch() == one_epoch);
+    CHECK(counts.of(one_epoch) == Counters{1, 0});
+  }
+  CHECK(counts.of(one_epoch) == Counters{1, 1});
+  { const Counted none; }
+  { const Counted of_run = Counted::sent(counts.completion(), EpochId{}); }
+  CHECK(counts.completion().n_epochs() == 1);
+}
+
+TEST_CASE("a message that leaves for another PE is processed there", "[runtime][completion]") {
+  Counts here, there;
+  const EpochId travels = Counted::departs(here.completion(), one_epoch);
+  CHECK(here.of(one_epoch) == Counters{1, 0});
+  {
+    Counted arrived(there.completion(), travels);
+    CHECK(there.of(one_epoch) == Counters{0, 0});
+    CHECK(arrived.leave() == one_epoch);
+    CHECK(arrived.epoch() == EpochId{});
+  }
+  CHECK(there.of(one_epoch) == Counters{0, 0});  // it went on
+  { const Counted back(here.completion(), travels); }
+  CHECK(here.of(one_epoch) == Counters{1, 1});
+}
+
+TEST_CASE("a message that moves counts once, and one that is replaced is gone",
+          "[runtime][completion]") {
+  Counts counts;
+  Counted first = Counted::sent(counts.completion(), one_epoch);
+  Counted kept(std::move(first));
+  first = Counted::sent(counts.completion(), other_epoch);
+  CHECK(counts.of(one_epoch) == Counters{1, 0});
+  kept = std::move(first);
+  CHECK(counts.of(one_epoch) == Counters{1, 1});
+  CHECK(counts.of(other_epoch) == Counters{1, 0});
+  CHECK(kept.epoch() == other_epoch);
+  kept.done();
+  CHECK(counts.of(other_epoch) == Counters{1, 1});
+
+  // A table that is dropped counts what waits in it.
+  std::vector<Counted> table;
+  for (int i = 0; i < 20; ++i) table.push_back(Counted::sent(counts.completion(), one_epoch));
+  table.erase(table.begin() + 3);
+  CHECK(counts.of(one_epoch) == Counters{21, 2});
+  table.clear();
+  CHECK(counts.of(one_epoch) == Counters{21, 21});
+}
+
+TEST_CASE("the run waits for what holds it", "[runtime][completion]") {
+  Counts counts;
+  {
+    RunHold first(counts.completion());
+    const RunHold held(std::move(first));
+    CHECK(counts.completion().run_sent() == 1);
+    CHECK(counts.completion().run_processed() == 0);
+  }
+  CHECK(counts.completion().run_processed() == 1);
+}
+
+TEST_CASE("a PE that an exception has stopped reports no epoch", "[runtime][completion]") {
+  Network network(2, 7);
+  Completion& other = network.at(PeId{1});
+  Counted::departs(other, one_epoch);
+  other.stop_reporting();
+  CHECK_FALSE(other.report_epochs());
+  CHECK(network.bag.empty());
 }
