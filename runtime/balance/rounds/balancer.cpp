@@ -165,12 +165,12 @@ void Balancer::entered(Element& element) {
   }
   const auto coordinator = group()[plan_.coordinator];
   switch (barrier_.entered(element)) {
-    case Barrier::Entry::usual:
+    case Barrier::Entrant::usual:
       break;
-    case Barrier::Entry::late:
+    case Barrier::Entrant::late:
       coordinator.send<&Balancer::late_arrival>();
       break;
-    case Barrier::Entry::newcomer:
+    case Barrier::Entrant::newcomer:
       coordinator.send<&Balancer::admit>(pe(), barrier_.hold(element));
       break;
   }

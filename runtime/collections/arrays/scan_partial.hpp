@@ -67,7 +67,7 @@ template <class Types>
 class ScanOfPe final : public KeptScan {
  public:
   using T = typename Types::T;
-  struct Entry {
+  struct Contribution {
     typename Types::Key key;
     T value;
     std::optional<T> first;  ///< of an exclusive scan
@@ -75,22 +75,23 @@ class ScanOfPe final : public KeptScan {
     Callback<typename Types::Result> target;
   };
 
-  void add(Entry&& entry) { entries_.push_back(std::move(entry)); }
+  void add(Contribution&& one) { contributions_.push_back(std::move(one)); }
   void add(ScanOfPe&& more) {
-    entries_.insert(entries_.end(), std::make_move_iterator(more.entries_.begin()),
-                    std::make_move_iterator(more.entries_.end()));
+    contributions_.insert(contributions_.end(),
+                          std::make_move_iterator(more.contributions_.begin()),
+                          std::make_move_iterator(more.contributions_.end()));
   }
 
   /// The first index of each run and its combined value, in the order of indices.
   [[nodiscard]] ScanRuns<Types> runs(const typename Types::Op& op) {
-    std::sort(entries_.begin(), entries_.end(),
-              [](const Entry& a, const Entry& b) { return a.key < b.key; });
+    std::sort(contributions_.begin(), contributions_.end(),
+              [](const Contribution& a, const Contribution& b) { return a.key < b.key; });
     ScanRuns<Types> runs;
-    for (std::size_t i = 0; i < entries_.size(); ++i) {
+    for (std::size_t i = 0; i < contributions_.size(); ++i) {
       if (begins_run(i)) {
-        runs.emplace_back(entries_[i].key, entries_[i].value);
+        runs.emplace_back(contributions_[i].key, contributions_[i].value);
       } else {
-        runs.back().second = combined(op, std::move(runs.back().second), entries_[i].value);
+        runs.back().second = combined(op, std::move(runs.back().second), contributions_[i].value);
       }
     }
     return runs;
@@ -101,34 +102,34 @@ class ScanOfPe final : public KeptScan {
     Element* const contributor = std::exchange(pe.context().element, nullptr);
     std::optional<T> sum;
     std::size_t run = 0;
-    for (std::size_t i = 0; i < entries_.size(); ++i) {
-      Entry& entry = entries_[i];
+    for (std::size_t i = 0; i < contributions_.size(); ++i) {
+      Contribution& one = contributions_[i];
       if (begins_run(i)) sum = std::move(before[run++]);
-      std::optional<T> whole = sum ? combined(op, *sum, entry.value) : entry.value;
-      const DeliveryScope scope(pe, entry.epoch);
-      if (!entry.first) {
-        entry.target(finished(op, *whole));
+      std::optional<T> whole = sum ? combined(op, *sum, one.value) : one.value;
+      const DeliveryScope scope(pe, one.epoch);
+      if (!one.first) {
+        one.target(finished(op, *whole));
       } else if (sum) {
-        entry.target(finished(op, combined(op, std::move(*entry.first), *sum)));
+        one.target(finished(op, combined(op, std::move(*one.first), *sum)));
       } else {
-        entry.target(finished(op, std::move(*entry.first)));
+        one.target(finished(op, std::move(*one.first)));
       }
-      pe.completion().processed(entry.epoch);
+      pe.completion().processed(one.epoch);
       sum = std::move(whole);
     }
     pe.context().element = contributor;
   }
 
   void drop(Completion& completion) const override {
-    for (const Entry& entry : entries_) completion.processed(entry.epoch);
+    for (const Contribution& one : contributions_) completion.processed(one.epoch);
   }
 
  private:
   [[nodiscard]] bool begins_run(std::size_t i) const {
-    return !Types::in_runs || i == 0 || !adjoin(entries_[i - 1].key, entries_[i].key);
+    return !Types::in_runs || i == 0 || !adjoin(contributions_[i - 1].key, contributions_[i].key);
   }
 
-  std::vector<Entry> entries_;
+  std::vector<Contribution> contributions_;
 };
 
 /// The runs of a scan on their way to the root, with the PEs that hold them. On the PE of its own
@@ -147,9 +148,9 @@ class ScanPartial final : public Partial {
   static const PartialKind& its_kind() { return kind_; }
   [[nodiscard]] const PartialKind& kind() const override { return kind_; }
 
-  void add(Collection& collection, const Op& op, typename Here::Entry&& entry) {
+  void add(Collection& collection, const Op& op, typename Here::Contribution&& one) {
     require_one_operation(op_, op);
-    open(collection).add(std::move(entry));
+    open(collection).add(std::move(one));
   }
   void merge(Partial&& other) override {
     auto& more = static_cast<ScanPartial&>(other);
@@ -262,13 +263,13 @@ void contribute_to_scan(const Key& key, const ToArray& to, const Op& scan_op, T 
   const typename Types::Op& op = ScanOp<Op>::of(scan_op);
   const EpochId epoch = pe.context().epoch;
   pe.completion().sent(epoch);
-  typename Scan::Here::Entry entry{key, std::move(value), std::move(first), epoch, target};
+  typename Scan::Here::Contribution one{key, std::move(value), std::move(first), epoch, target};
   if (Partial* open = to.open_sum(Scan::its_kind()); open != nullptr) {
-    static_cast<Scan*>(open)->add(to.collection, op, std::move(entry));
+    static_cast<Scan*>(open)->add(to.collection, op, std::move(one));
     to.contributed();
   } else {
     auto scan = std::make_unique<Scan>(to.collection, op);
-    scan->add(to.collection, op, std::move(entry));
+    scan->add(to.collection, op, std::move(one));
     to.contribute(std::move(scan));
   }
 }
