@@ -163,7 +163,7 @@ class ScanPartial final : public Partial {
   }
   void leave() override {
     if (kept_ == nullptr) return;
-    parts_.push_back(Part{here_->pe().id(), number_, kept_->runs(op_)});
+    parts_.push_back(PeRuns{here_->pe().id(), number_, kept_->runs(op_)});
     kept_ = nullptr;
     here_ = nullptr;
   }
@@ -184,7 +184,7 @@ class ScanPartial final : public Partial {
     std::sort(places.begin(), places.end(),
               [&at](const RunAt& a, const RunAt& b) { return at(a).first < at(b).first; });
     std::vector<Answer> answers;
-    for (const Part& part : parts_)
+    for (const PeRuns& part : parts_)
       answers.push_back(Answer{part.number, op_, std::vector<std::optional<T>>(part.runs.size())});
     std::optional<T> sum;
     for (const RunAt& place : places) {
@@ -199,7 +199,7 @@ class ScanPartial final : public Partial {
 
  private:
   /// The runs of one report of a PE, and the number by which the PE keeps the contributions.
-  struct Part {
+  struct PeRuns {
     PeId pe;
     std::uint64_t number = 0;
     ScanRuns<Types> runs;
@@ -221,7 +221,7 @@ class ScanPartial final : public Partial {
   explicit ScanPartial(Reader& ar)
       : op_(ar.take<Op>()),
         collection_(ar.take<CollectionId>()),
-        parts_(ar.take<std::vector<Part>>()) {}
+        parts_(ar.take<std::vector<PeRuns>>()) {}
   static std::unique_ptr<Partial> unpack(Reader& ar) {
     return std::unique_ptr<Partial>(new ScanPartial(ar));
   }
@@ -244,7 +244,7 @@ class ScanPartial final : public Partial {
 
   [[no_unique_address]] Op op_;
   CollectionId collection_;
-  std::vector<Part> parts_;
+  std::vector<PeRuns> parts_;
   Collection* here_ = nullptr;  // while open
   Here* kept_ = nullptr;        // while open, in the list of the collection; null otherwise
   std::uint64_t number_ = 0;    // its number there
