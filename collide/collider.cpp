@@ -124,7 +124,7 @@ void Collider::destroy() const {
 namespace {
 
 /// The Managers have taken objects with this summary. At its end they have dropped them.
-Task collide_taken(Collider collider, std::uint64_t step, Summary summary, Report report) {
+Task collide_taken(Collider collider, std::uint64_t step, Summary summary, HitReceivers to) {
   Plan plan;
   std::exception_ptr refused;
   try {
@@ -132,18 +132,18 @@ Task collide_taken(Collider collider, std::uint64_t step, Summary summary, Repor
   } catch (...) {
     refused = std::current_exception();
   }
-  const auto body = [&] { collider.managers.broadcast<&Manager::begin>(step, plan, report); };
+  const auto body = [&] { collider.managers.broadcast<&Manager::begin>(step, plan, to); };
   co_await epoch(body);
   remaining(collider).end_step();
   if (refused) std::rethrow_exception(refused);
 }
 
 /// Collides the objects of a collision of the Neighbours as they are.
-Task search(Collider collider, std::uint64_t step, Report report) {
+Task search(Collider collider, std::uint64_t step, HitReceivers to) {
   const std::uint64_t own_step = remaining(collider).new_step();
   const Summary summary = co_await collider.neighbours.reduce<&Neighbours::enlarge>(
       step, own_step, false, n_sampled(collider));
-  co_await collide_taken(collider, own_step, summary, report);
+  co_await collide_taken(collider, own_step, summary, to);
 }
 
 /// Finds pairs to keep. Sets `too_many` if they are, and then nothing is kept; if they are by far,
@@ -155,7 +155,7 @@ Task find_kept(Collider collider, std::uint64_t step, bool& too_many) {
       co_await collider.neighbours.reduce<&Neighbours::enlarge>(step, own_step, true, n_each);
   too_many = are_far_too_many(summary, collider.options.rules, n_pes());
   if (too_many) summary = {};  // nothing is searched
-  const Report to_neighbours{
+  const HitReceivers to_neighbours{
       report_to_neighbours(collider.neighbours, step), {}, Receivers::one_owner};
   try {
     co_await collide_taken(collider, own_step, summary, to_neighbours);
@@ -167,23 +167,23 @@ Task find_kept(Collider collider, std::uint64_t step, bool& too_many) {
 }
 
 /// A step of the Managers encloses the others, so that the collider is known to collide.
-Task collide_with_slack(Collider collider, std::uint64_t step, Report report,
+Task collide_with_slack(Collider collider, std::uint64_t step, HitReceivers to,
                         Callback<void> taken) {
   const bool must_search = co_await collider.neighbours.reduce<&Neighbours::prepare>(step) == 0;
   if (taken) taken();
   bool as_they_are = must_search && collider.neighbours.local().keeps_none();
   if (must_search && !as_they_are) co_await find_kept(collider, step, as_they_are);
   if (as_they_are) {
-    co_await search(collider, step, report);
+    co_await search(collider, step, to);
     co_return;
   }
-  const auto body = [&] { collider.neighbours.broadcast<&Neighbours::match>(step, report); };
+  const auto body = [&] { collider.neighbours.broadcast<&Neighbours::match>(step, to); };
   co_await epoch(body);
 }
 
 /// Has a collider of its own, which outlives the handle that run() is called on.
-Task collide_once(Collider collider, Report report, Callback<void> taken) {
-  if (!report.call)
+Task collide_once(Collider collider, HitReceivers to, Callback<void> taken) {
+  if (!to.call)
     fail(ErrorCode::bad_argument,
          "Collider::run() with a report that nothing receives: its hits would be lost; give it "
          "report_to<&Client::receive>(clients)");
@@ -191,7 +191,7 @@ Task collide_once(Collider collider, Report report, Callback<void> taken) {
   if (collider.options.slack > 0) {
     std::exception_ptr refused;
     try {
-      co_await collide_with_slack(collider, step, report, taken);
+      co_await collide_with_slack(collider, step, to, taken);
     } catch (...) {
       refused = std::current_exception();
     }
@@ -204,13 +204,13 @@ Task collide_once(Collider collider, Report report, Callback<void> taken) {
   const Summary summary =
       co_await collider.managers.reduce<&Manager::prepare>(step, n_sampled(collider));
   if (taken) taken();
-  co_await collide_taken(collider, step, summary, report);
+  co_await collide_taken(collider, step, summary, to);
 }
 
 }  // namespace
 
-Task Collider::run(Report report, Callback<void> taken) const {
-  return collide_once(*this, std::move(report), std::move(taken));
+Task Collider::run(HitReceivers to, Callback<void> taken) const {
+  return collide_once(*this, std::move(to), std::move(taken));
 }
 
 Future<CollisionStatistics> Collider::statistics() const {

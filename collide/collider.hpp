@@ -14,11 +14,10 @@
 //     co_await tess::epoch([&] { collider = tess::collide::make_collider({}); });
 //     const auto clients = tess::create<Client>(tess::range(8));
 //     co_await tess::epoch([&] { clients.broadcast<&Client::submit>(collider); });
-//     const tess::collide::Report report{tess::collide::report_to<&Client::receive>(clients), {}};
-//     co_await collider.run(report);
+//     const tess::collide::HitReceivers to{tess::collide::report_to<&Client::receive>(clients), {}};
+//     co_await collider.run(to);
 //
-// The report has a name before the co_await: g++ 12 destroys an aggregate twice that is written in
-// one.
+// They have a name before the co_await: g++ 12 destroys twice an aggregate that is written in one.
 //
 // submit() is a call to the local Manager, so the epoch that makes the collider is awaited first
 // (submit_early() does without). Before a collision, the main coroutine awaits an epoch
@@ -42,9 +41,9 @@
 #pragma once
 
 #include "collide/collider_options.hpp"
+#include "collide/hit_receivers.hpp"
 #include "collide/objects.hpp"
 #include "collide/parallel/voxel.hpp"
-#include "collide/report.hpp"
 #include "runtime/runtime.hpp"
 
 #include <span>
@@ -73,9 +72,9 @@ struct Collider {
 
   /// Collides all objects that were submitted. When the task is done, the owners have handled all
   /// hits. Calls `taken`, unless it is empty, when clients may submit for the next collision. Throws
-  /// Error: bad_argument for a report without a call; out_of_range if a coordinate exceeds the range
+  /// Error: bad_argument if `to` has no call; out_of_range if a coordinate exceeds the range
   /// of cells, and then the objects are dropped.
-  Task run(Report report, Callback<void> taken = {}) const;
+  Task run(HitReceivers to, Callback<void> taken = {}) const;
   /// What the last collision did, on all PEs. No collision may be running.
   [[nodiscard]] Future<CollisionStatistics> statistics() const;
   /// Ends the voxels that had no objects since the last call, and frees the memory that Managers

@@ -1,6 +1,6 @@
 // The ids of owners that are elements of arrays of one to three dimensions, or members of a group:
-// collide/report.hpp sends them their hits. An id also says how many dimensions its index has, so
-// that one which reaches another array is refused.
+// hit_receivers.hpp sends them their hits. An id also says how many dimensions its index has, so that
+// one which reaches another array is refused.
 //
 //     dimensions   bits from the top
 //     1            0…0, 32 of x

@@ -232,8 +232,8 @@ Task AnyCoupling::collide_covers() {
     }
   });
   // Named, because g++ 12 destroys an aggregate twice if it is written in a co_await expression.
-  const collide::Report to_target{Callback<collide::Hits>(detail::hits_kind, state.target_bytes()),
-                                  target_model};
+  const collide::HitReceivers to_target{
+      Callback<collide::Hits>(detail::hits_kind, state.target_bytes()), target_model};
   co_await setup.collider.run(to_target);
 }
 

@@ -113,7 +113,7 @@ tess::Task compute(Options options) {
   const double seconds = tess::seconds(tess::now() - begin);
   auto on_background = background.reduce<&Slab::compare>(options.end);
   auto on_overset = overset.reduce<&Slab::compare>(options.end);
-  const Outcome a = co_await on_background, b = co_await on_overset;
+  const Comparison a = co_await on_background, b = co_await on_overset;
   tess::print(fmt::format(
       "{} cubes on an edge, {} slabs per mesh, {} steps: {:.6f} s, {:.3f} ms a step\n"
       "from the solution: background {:.3e}, overset {:.3e}; taken {} and {}; hash {:016x}\n",

@@ -160,14 +160,14 @@ void Slab::received(CouplingId coupling) {
   }
 }
 
-void Slab::compare(double time, tess::Callback<Outcome> result) {
-  Outcome mine{0, 0, n_taken_};
+void Slab::compare(double time, tess::Callback<Comparison> result) {
+  Comparison mine{0, 0, n_taken_};
   for (std::size_t node = 0; node < n_owned(); ++node) {
     kit::worsen(mine.error, std::abs(values_[node] - exact(points_[node], time)));
     const std::pair<tess::m2m::GlobalId, double> whole{point_ids_[node], values_[node]};
     mine.hash += tess::hash_bytes(&whole, sizeof whole);
   }
-  contribute(JoinOutcomes{}, mine, std::move(result));
+  contribute(JoinComparisons{}, mine, std::move(result));
 }
 
 }  // namespace coupled

@@ -48,14 +48,14 @@ struct Step {
 };
 
 /// What is known at the end.
-struct Outcome {
+struct Comparison {
   double error = 0;        ///< largest distance from exact()
   std::uint64_t hash = 0;  ///< of all values, in no order
   std::uint64_t n_taken = 0;
 };
-struct JoinOutcomes {
-  Outcome operator()(const Outcome& a, const Outcome& b) const {
-    Outcome both{a.error, a.hash + b.hash, a.n_taken + b.n_taken};
+struct JoinComparisons {
+  Comparison operator()(const Comparison& a, const Comparison& b) const {
+    Comparison both{a.error, a.hash + b.hash, a.n_taken + b.n_taken};
     kit::worsen(both.error, b.error);
     return both;
   }
@@ -70,7 +70,7 @@ class Slab : public tess::Chare<Slab, tess::Index1>, public tess::m2m::Piece<Sla
   void exchange();
   void step(const Step& by);
   void move_to(Point low);
-  void compare(double time, tess::Callback<Outcome> result);
+  void compare(double time, tess::Callback<Comparison> result);
 
   // What the coupling calls: pairs (value, depth in the box) of all nodes, and those that arrive.
   [[nodiscard]] tess::m2m::MeshView mesh_view() const;

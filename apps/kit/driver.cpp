@@ -40,7 +40,7 @@ void Driver::folder(const std::string& name, std::string& path, const std::strin
 }
 
 void Driver::enters(const std::string& option, Modes mode, const std::string& value) {
-  entries_.push_back({option, value, mode});
+  mode_options_.push_back({option, value, mode});
 }
 
 void Driver::study(const std::string& meaning) {
@@ -82,8 +82,8 @@ bool Driver::parse(int argc, char** argv, const std::string& footer) {
   }
   mode_ = Mode::run;
   std::string reason;
-  for (const Entry& entry : entries_) {
-    const auto& [option, value, mode] = entry;
+  for (const ModeOption& one : mode_options_) {
+    const auto& [option, value, mode] = one;
     if (!line_.is_given(option) || (!value.empty() && line_.value(option) != value)) continue;
     if (mode_ != Mode::run && mode_ != mode && !reason.starts_with(option))
       tess::refuse_together(reason, option);
@@ -111,7 +111,7 @@ void Driver::refuse_others(const std::string& reason) const {
     if ((known.modes & mode_) != 0 || !line_.is_given(known.name)) continue;
     if (mode_ != Mode::run) line_.refuse_beside(reason, {known.name.c_str()});
     std::string needed;
-    for (const auto& [option, value, mode] : entries_)
+    for (const auto& [option, value, mode] : mode_options_)
       if ((known.modes & mode) != 0 && needed.find(option) == std::string::npos)
         needed += (needed.empty() ? "" : " or ") + option + (value.empty() ? "" : " ") + value;
     line_.refuse_without(needed, {known.name.c_str()});

@@ -111,7 +111,7 @@ class Driver {
     std::string name;
     Modes modes;
   };
-  struct Entry {
+  struct ModeOption {
     std::string option, value;  // of any value if it is empty
     Modes mode;
   };
@@ -126,7 +126,7 @@ class Driver {
   std::string json_, picture_, shows_progress_ = "auto";
   Modes modes_ = Mode::all, mode_ = Mode::run;
   std::vector<Known> known_;
-  std::vector<Entry> entries_;
+  std::vector<ModeOption> mode_options_;
   std::vector<std::string> folders_;  // options
   FileNames files_;
   std::optional<Progress> progress_;

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "collide/hit.hpp"
+#include "collide/hit_receivers.hpp"
 #include "collide/parallel/object_list.hpp"
-#include "collide/report.hpp"
 #include "runtime/core/hash.hpp"
 #include "runtime/core/uninitialised.hpp"
 
@@ -23,8 +23,8 @@ class HitSorter {
     const std::uint32_t* objects;
   };
 
-  /// Pairs of objects that are found on a PE, to the owners that the report names.
-  void add(const Side& first, const Side& second, std::size_t n, const Report& report,
+  /// Pairs of objects that are found on a PE, to the owners that `to` names.
+  void add(const Side& first, const Side& second, std::size_t n, const HitReceivers& to,
            PeId found_on) {
     const auto sources_of = [&](std::size_t i) {
       return std::pair(first.list.source(first.objects[i]), second.list.source(second.objects[i]));
@@ -46,7 +46,7 @@ class HitSorter {
           *out++ = {mine.list.local(mine.objects[i], my_source),
                     theirs.list.local(theirs.objects[i], their_source)};
       };
-      const auto [to_a, to_b] = receivers(of_a, of_b, report, found_on);
+      const auto [to_a, to_b] = receivers(of_a, of_b, to, found_on);
       if (to_a) copy(first, sources.first, second, sources.second);
       if (to_b) copy(second, sources.second, first, sources.first);
     }
@@ -66,13 +66,13 @@ class HitSorter {
   /// Whether the owners of a pair's objects receive it.
   [[nodiscard]] static std::pair<bool, bool> receivers(const ObjectList::Source& a,
                                                        const ObjectList::Source& b,
-                                                       const Report& report, PeId found_on) {
-    if (report.only) {
-      const bool to_a = a.model == *report.only;
-      return {to_a, b.model == *report.only && !(to_a && a.owner == b.owner)};
+                                                       const HitReceivers& to, PeId found_on) {
+    if (to.only) {
+      const bool to_a = a.model == *to.only;
+      return {to_a, b.model == *to.only && !(to_a && a.owner == b.owner)};
     }
     if (a.owner == b.owner) return {true, false};
-    if (report.receivers == Receivers::both_owners) return {true, true};
+    if (to.receivers == Receivers::both_owners) return {true, true};
     const bool to_b = a.pe != found_on && b.pe == found_on;
     return {!to_b, to_b};
   }

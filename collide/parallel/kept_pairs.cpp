@@ -108,7 +108,7 @@ bool KeptPairs::hold_for(const ObjectList& now) const {
 }
 
 bool KeptPairs::test(Progress& progress, const ObjectList& now, const Boxes& of_others,
-                     Touching touching, const Report& report) const {
+                     Touching touching, const HitReceivers& to) const {
   // Their hits fit into the cache until their owners receive them.
   constexpr std::size_t most = 1 << 13;
   constexpr std::size_t ahead = 16;  // pairs whose boxes are being loaded
@@ -123,7 +123,7 @@ bool KeptPairs::test(Progress& progress, const ObjectList& now, const Boxes& of_
   std::array<std::uint32_t, 256> mine, theirs;
   std::size_t n = 0, n_here = 0;
   const auto sort = [&] {
-    hits.add({now, mine.data()}, {other, theirs.data()}, n, report, pe_);
+    hits.add({now, mine.data()}, {other, theirs.data()}, n, to, pe_);
     n = 0;
   };
   if (progress.pe != pe) progress = {pe, 0, progress.n_tested};
@@ -141,7 +141,7 @@ bool KeptPairs::test(Progress& progress, const ObjectList& now, const Boxes& of_
     }
   }
   if (n != 0) sort();
-  hits.send(report.call);
+  hits.send(to.call);
   progress.n_tested += n_here;
   if (progress.n_lists == with.lists.size()) progress = {pe + 1, 0, progress.n_tested};
   return true;

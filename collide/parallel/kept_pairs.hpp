@@ -11,10 +11,10 @@
 //     PE 2   PE 0 needs 17 and 40                   whose boxes it sends before each test
 #pragma once
 
+#include "collide/hit_receivers.hpp"
 #include "collide/parallel/hit_sorter.hpp"
 #include "collide/parallel/object_list.hpp"
 #include "collide/parallel/plan.hpp"
-#include "collide/report.hpp"
 
 #include <cstdint>
 #include <functional>
@@ -80,7 +80,7 @@ class KeptPairs {
   };
   /// Tests some of the pairs, and sends the hits; false if there are no more.
   bool test(Progress& progress, const ObjectList& now, const Boxes& of_others, Touching touching,
-            const Report& report) const;
+            const HitReceivers& to) const;
 
  private:
   struct With {

@@ -35,7 +35,7 @@ auto Manager::sender(std::uint64_t step) {
   };
 }
 
-void Manager::begin(std::uint64_t step, const Plan& plan, const Report& report) {
+void Manager::begin(std::uint64_t step, const Plan& plan, const HitReceivers& receivers) {
   Round& r = round(step);
   if (plan.nothing) {
     last_ = {};
@@ -47,7 +47,7 @@ void Manager::begin(std::uint64_t step, const Plan& plan, const Report& report) 
   r.statistics.grid.voxel_size = std::ranges::max(plan.grid(plan.lowest()).size());
   r.statistics.grid.n_levels = static_cast<std::uint64_t>(std::popcount(plan.levels));
   r.delivery->plan = plan;
-  r.delivery->report = report;
+  r.delivery->receivers = receivers;
   r.delivery->managers = group();
   if (plan.pieces.used) {
     r.delivery->objects.divide(plan.pieces.frame, plan.pieces.longest, pe());

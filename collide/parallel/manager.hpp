@@ -62,7 +62,7 @@ class Manager : public Group<Manager> {
   /// The same for objects that come from another place than submit().
   [[nodiscard]] Summary take(std::uint64_t step, ObjectList objects, std::size_t n_sampled);
   /// Without a plan: the objects are dropped.
-  void begin(std::uint64_t step, const Plan& plan, const Report& report);
+  void begin(std::uint64_t step, const Plan& plan, const HitReceivers& receivers);
   void receive_records(std::uint64_t step, const Bundle<VoxelRecord>& bundle);
   void receive_answers(std::uint64_t step, const Bundle<VoxelAnswer>& bundle);
   /// Sends some voxels' parts; then the next ones, when other messages had their turn.

@@ -74,9 +74,9 @@ auto Neighbours::request_sender(std::uint64_t step) {
   };
 }
 
-void Neighbours::match(std::uint64_t step, const Report& report) {
+void Neighbours::match(std::uint64_t step, const HitReceivers& to) {
   Round& r = round(step);
-  r.report = report;
+  r.receivers = to;
   r.may_test = true;
   if (r.is_search) {
     r.pairs->ask_for_others([&](std::int32_t of, std::span<const std::uint32_t> positions) {
@@ -135,7 +135,7 @@ void Neighbours::test_if_complete(std::uint64_t step, Round& r) {
 
 void Neighbours::test(std::uint64_t step) {
   Round& r = round(step);
-  if (r.pairs->test(r.progress, r.now, r.boxes, rules_.touching, r.report)) {
+  if (r.pairs->test(r.progress, r.now, r.boxes, rules_.touching, r.receivers)) {
     group()[pe()].send<&Neighbours::test>(step);
     return;
   }

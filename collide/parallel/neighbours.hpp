@@ -53,7 +53,7 @@ class Neighbours : public Group<Neighbours> {
   void keep(std::uint64_t step, Hits found);
   /// The result: true if a PE was given too many pairs to keep.
   void count(std::uint64_t step, const Callback<bool>& target);
-  void match(std::uint64_t step, const Report& report);
+  void match(std::uint64_t step, const HitReceivers& to);
   void receive_requests(std::uint64_t step, const Bundle<std::uint32_t>& bundle);
   void receive_copies(std::uint64_t step, std::int32_t from, Copies copies);
   /// Tests some of the pairs; then the next ones, when other messages had their turn.
@@ -80,7 +80,7 @@ class Neighbours : public Group<Neighbours> {
     std::shared_ptr<KeptPairs> pairs;  // kept, or found in this collision
     bool is_search = false;
     bool may_test = false;  // match() has come
-    Report report;
+    HitReceivers receivers;
     Exchange<std::uint32_t> requests;  // after a search
     KeptPairs::Boxes boxes;            // of other PEs' objects
     KeptPairs::Progress progress;

@@ -28,7 +28,7 @@ struct TooManyPairs {};
 
 /// Sorts pairs by the owners of their objects.
 struct Receiver {
-  const Report& report;
+  const HitReceivers& receivers;
   const Plan& plan;
   const ObjectList* of_a = nullptr;  // of the current search
   const ObjectList* of_b = nullptr;
@@ -52,7 +52,7 @@ struct Receiver {
            const std::uint32_t* second, std::size_t n) {
     n_pairs += n;
     if (n_pairs > most_pairs) throw TooManyPairs{};
-    hits.add({of_first, first}, {of_second, second}, n, report, my_pe());
+    hits.add({of_first, first}, {of_second, second}, n, receivers, my_pe());
   }
 };
 
@@ -95,11 +95,11 @@ bool search_at_once(std::span<const Part> parts) {
   const Delivery& delivery = parts.front().delivery();
   voxel.gather(parts, delivery.plan.rules.within_model);
   charge_each(delivery.plan.costs.copy, voxel.n_copied());
-  Receiver receiver{delivery.report, delivery.plan};
+  Receiver receiver{delivery.receivers, delivery.plan};
   const bool found = run_search(voxel, receiver, [&](Search& search) {
     voxel.for_each_search([&](const PairSets& sets) { solve(sets, receiver, search); });
   });
-  if (found) receiver.hits.send(delivery.report.call);
+  if (found) receiver.hits.send(delivery.receivers.call);
   return found;
 }
 
@@ -113,7 +113,7 @@ HitSorter PortionSearch::next() {
   while (!remaining_.empty()) {
     const PairSets sets = remaining_.back();
     remaining_.pop_back();
-    Receiver receiver{delivery.report, delivery.plan};
+    Receiver receiver{delivery.receivers, delivery.plan};
     if (!run_search(objects_, receiver, [&](Search& search) { solve(sets, receiver, search); }))
       divide(sets);
     else if (!receiver.hits.empty())

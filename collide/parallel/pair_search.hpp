@@ -31,7 +31,7 @@ class PortionSearch {
 
   /// Returns the next portion, or one without hits at the end.
   [[nodiscard]] HitSorter next();
-  [[nodiscard]] const Callback<Hits>& call() const { return parts_.front().delivery().report.call; }
+  [[nodiscard]] const auto& call() const { return parts_.front().delivery().receivers.call; }
 
  private:
   void divide(const PairSets& sets);

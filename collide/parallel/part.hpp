@@ -3,10 +3,10 @@
 // the boxes of several voxels are sent together (shipment.hpp), or those of one part.
 #pragma once
 
+#include "collide/hit_receivers.hpp"
 #include "collide/parallel/object_list.hpp"
 #include "collide/parallel/plan.hpp"
 #include "collide/parallel/voxel_sort.hpp"
-#include "collide/report.hpp"
 #include "collide/search/entry.hpp"
 
 #include <memory>
@@ -20,7 +20,7 @@ class Manager;
 /// The objects of a PE in a collision, and which of them are in which voxel.
 struct Delivery {
   Plan plan;
-  Report report;
+  HitReceivers receivers;
   GroupProxy<Manager> managers;
   ObjectList objects;
   std::vector<search::Entry> sorted;  ///< by voxel
@@ -35,7 +35,7 @@ struct Delivery {
   /// `keeper` keeps this delivery, if its boxes may be sent from where they are.
   template <class Ar>
   void serialize(Ar& ar, const std::shared_ptr<const void>& keeper) {
-    ar(plan, report, managers, sorted);
+    ar(plan, receivers, managers, sorted);
     objects.serialize(ar, keeper);
   }
 };
@@ -44,7 +44,7 @@ struct Delivery {
 [[nodiscard]] inline std::shared_ptr<Delivery> alone(const Delivery& from) {
   auto out = std::make_shared<Delivery>();
   out->plan = from.plan;
-  out->report = from.report;
+  out->receivers = from.receivers;
   out->managers = from.managers;
   return out;
 }

@@ -1,4 +1,4 @@
-// The plan of a search: which sets are compared, on one level or on several.
+// A search for pairs: it chooses which sets are compared, on one level or on several.
 #include "collide/pairs.hpp"
 
 #include "collide/search/choose_pieces.hpp"
@@ -16,26 +16,26 @@ namespace {
 using namespace search;
 
 template <class Real, std::size_t D>
-class Plan {
+class Searcher {
   using TheBox = Box<Real, D>;
   using Boxes = std::span<const TheBox>;
   using Entries = std::vector<Entry>;
 
  public:
-  Plan(const PairOptions& options, bool by_model, PairSink sink)
+  Searcher(const PairOptions& options, bool by_model, PairSink sink)
       : options_(options), search_(options, by_model, sink) {}
 
   /// Pairs of `a` with `b`, or within `a` if `b` has no boxes.
   void run(Boxes boxes_a, const Entries& a, Boxes boxes_b, const Entries& b, bool within,
            const TheBox& bounds) {
-    Part whole{{boxes_a.data(), boxes_b.data(), a, b, within}, bounds};
+    SubProblem whole{{boxes_a.data(), boxes_b.data(), a, b, within}, bounds};
     if (options_.voxel_size > 0) {
       check_memory(whole, bounds);
       solve(whole);
     } else if (!solved_on_one_level(whole)) {
       Levels levels(*this, whole, 1);
       if (levels.parts.size() > 1 && levels.cost < cost_of(whole)) {
-        for (Part& part : levels.parts) solve(part);
+        for (SubProblem& part : levels.parts) solve(part);
       } else {
         solve(whole);
       }
@@ -47,7 +47,7 @@ class Plan {
 
  private:
   /// A problem that is solved with one grid.
-  struct Part {
+  struct SubProblem {
     Problem<Real, D> problem;
     TheBox bounds;                         // of the objects of a
     bool swapped = false;                  // a is the second set
@@ -57,20 +57,21 @@ class Plan {
   /// with all smaller ones.
   struct Levels {
     /// As if there were `scale` objects for each.
-    Levels(Plan& plan, const Part& whole, double scale)
-        : Levels(plan, whole, scale,
+    Levels(Searcher& searcher, const SubProblem& whole, double scale)
+        : Levels(searcher, whole, scale,
                  SizeClasses<Real>(
-                     base_of_classes(whole, plan.search_.chooser()
+                     base_of_classes(whole, searcher.search_.chooser()
                                                 .choose(whole.problem, whole.bounds, true, scale)
                                                 .n_cells))) {}
-    Levels(Plan& plan, const Part& whole, double scale, const SizeClasses<Real>& classes)
+    Levels(Searcher& searcher, const SubProblem& whole, double scale,
+           const SizeClasses<Real>& classes)
         : by_class_a(whole.problem.boxes_a, whole.problem.a, classes),
           by_class_b(whole.problem.boxes_b, whole.problem.b, classes) {
       const Problem<Real, D>& all = whole.problem;
       const auto add = [&](const Problem<Real, D>& problem, bool swapped) {
         if (problem.n_comparisons() == 0) return;
         parts.push_back({problem, bounds_of(problem.boxes_a, problem.a), swapped});
-        cost += plan.cost_of(parts.back(), scale);
+        cost += searcher.cost_of(parts.back(), scale);
       };
       for (std::size_t c = 0; c < classes.size(); ++c) {
         const auto a = by_class_a.of(c), b = by_class_b.of(c);
@@ -84,20 +85,20 @@ class Plan {
     }
 
     ByClass by_class_a, by_class_b;
-    std::vector<Part> parts;
+    std::vector<SubProblem> parts;
     double cost = 0;
   };
 
-  double cost_of(Part& part, double scale = 1) {
+  double cost_of(SubProblem& part, double scale = 1) {
     if (!part.choice)
       part.choice = search_.chooser().choose(part.problem, part.bounds, false, scale);
     return part.choice->cost;
   }
-  void solve(const Part& part) {
+  void solve(const SubProblem& part) {
     static_cast<void>(search_.solve(part.problem, part.bounds, part.swapped, part.choice));
   }
   /// False, without a pair, if large objects touch so many voxels that levels may cost less.
-  bool solved_on_one_level(Part& whole) {
+  bool solved_on_one_level(SubProblem& whole) {
     const std::size_t n = whole.problem.a.size() + whole.problem.b.size();
     constexpr std::size_t many = 4096;
     if (n > many &&
@@ -111,7 +112,7 @@ class Plan {
   }
   /// From a sample: 4 096 of the objects, but at most an eighth, which costs little beside the
   /// search.
-  bool levels_seem_cheaper(Part& whole) {
+  bool levels_seem_cheaper(SubProblem& whole) {
     const double n = static_cast<double>(whole.problem.a.size() + whole.problem.b.size());
     const double scale = std::max(8.0, n / 4096);
     Entries a, b;
@@ -123,7 +124,7 @@ class Plan {
     };
     take(whole.problem.a, a);
     take(whole.problem.b, b);
-    Part sample = whole;
+    SubProblem sample = whole;
     sample.problem.a = a;
     sample.problem.b = b;
     // Objects of one class are one part, whose cost is another estimate of the same search.
@@ -132,7 +133,7 @@ class Plan {
   }
   /// The largest size of class 0: the voxel that would be chosen if all objects were points, or the
   /// smallest object.
-  static Real base_of_classes(const Part& whole, const CellAt<D>& cells_of_points) {
+  static Real base_of_classes(const SubProblem& whole, const CellAt<D>& cells_of_points) {
     Real smallest = std::numeric_limits<Real>::infinity(), voxel = smallest;
     for (const Entry entry : whole.problem.a)
       smallest = std::min(smallest, longest_extent(whole.problem.boxes_a[object_of(entry)]));
@@ -145,7 +146,7 @@ class Plan {
     return std::max(std::isfinite(voxel) ? voxel : Real{0}, smallest);
   }
 
-  void check_memory(const Part& whole, const TheBox& bounds) const {
+  void check_memory(const SubProblem& whole, const TheBox& bounds) const {
     const double size = options_.voxel_size;
     double n_entries = 0;
     std::array<double, D> most;  // voxels per axis
@@ -235,7 +236,7 @@ void search_pairs(std::span<const Box<Real, D>> boxes, const PairOptions& option
     fail(ErrorCode::bad_value, "pairs: ", options.models.size(), " models for ", boxes.size(),
          " objects; give one per object");
   const Models models = by_model ? count(options.models) : Models{};
-  Plan<Real, D> plan(options, models.n > 2, sink);
+  Searcher<Real, D> searcher(options, models.n > 2, sink);
   const auto& [entries, bounds] = Searched<Real, D>(boxes, options, "");
   if (models.n == 1) {
     if (options.statistics != nullptr) {
@@ -248,9 +249,9 @@ void search_pairs(std::span<const Box<Real, D>> boxes, const PairOptions& option
     of_second.reserve(entries.size());
     for (const Entry entry : entries)
       (options.models[object_of(entry)] == models.second ? of_second : of_first).push_back(entry);
-    plan.run(boxes, of_first, boxes, of_second, false, bounds);
+    searcher.run(boxes, of_first, boxes, of_second, false, bounds);
   } else {
-    plan.run(boxes, entries, {}, {}, true, bounds);
+    searcher.run(boxes, entries, {}, {}, true, bounds);
   }
   if (options.statistics != nullptr) options.statistics->n_invalid = boxes.size() - entries.size();
 }
@@ -264,12 +265,12 @@ void search_pairs(std::span<const Box<Real, D>> a, std::span<const Box<Real, D>>
   check_voxel_size(options);
   check_count(a.size());
   check_count(b.size());
-  Plan<Real, D> plan(options, false, sink);
+  Searcher<Real, D> searcher(options, false, sink);
   const Searched<Real, D> of_a(a, options, " of the first set"),
       of_b(b, options, " of the second set");
   if (options.statistics != nullptr) *options.statistics = {};
   if (!of_a.entries.empty() && !of_b.entries.empty())
-    plan.run(a, of_a.entries, b, of_b.entries, false, merged(of_a.bounds, of_b.bounds));
+    searcher.run(a, of_a.entries, b, of_b.entries, false, merged(of_a.bounds, of_b.bounds));
   if (options.statistics != nullptr)
     options.statistics->n_invalid = a.size() + b.size() - of_a.entries.size() - of_b.entries.size();
 }

@@ -39,7 +39,7 @@ bool VoxelSearch<Real, D>::solve(const TheProblem& problem, const TheBox& region
   statistics_.n_candidates = pairs_.n_total();
   statistics_.bytes = 0;
   for (const Level& level : levels_)
-    statistics_.bytes += level.cells.capacity() * sizeof(Cell) + level.codes.bytes() +
+    statistics_.bytes += level.cells.capacity() * sizeof(Counts) + level.codes.bytes() +
                          level.sorted.bytes() + level.voxels.capacity() * sizeof(Voxel) +
                          level.models.capacity() * 8;
   return true;
@@ -167,12 +167,12 @@ bool VoxelSearch<Real, D>::sort_into_voxels(const TheProblem& problem, const The
                                             const RegionGrid<Real, D>& grid, Level& level) {
   const std::size_t n_cells = grid.size();
   const std::size_t most = &level == &levels_.front() ? most_entries_ : ~std::size_t{0};
-  level.cells.assign(n_cells, Cell{});
+  level.cells.assign(n_cells, Counts{});
   level.codes.resize(problem.a.size() + problem.b.size());
   level.models.assign(by_model_ ? n_cells : 0, 0);
-  Cell* const cells = level.cells.data();
+  Counts* const cells = level.cells.data();
   std::size_t n_entries = 0;
-  const auto count = [&](std::uint32_t Cell::*set) {
+  const auto count = [&](std::uint32_t Counts::*set) {
     return [&, set](const std::uint32_t* cell_of, const std::uint32_t* entry_of, std::size_t n) {
       n_entries += n;
       for (std::size_t i = 0; i < n; ++i) ++(cells[cell_of[i]].*set);
@@ -180,8 +180,8 @@ bool VoxelSearch<Real, D>::sort_into_voxels(const TheProblem& problem, const The
       return n_entries <= most;
     };
   };
-  if (!spread<false, false>(problem, of_a, grid, level, count(&Cell::a)) ||
-      !spread<true, false>(problem, of_a, grid, level, count(&Cell::b)))
+  if (!spread<false, false>(problem, of_a, grid, level, count(&Counts::a)) ||
+      !spread<true, false>(problem, of_a, grid, level, count(&Counts::b)))
     return false;
   statistics_.grid.n_entries += n_entries;
 
@@ -205,7 +205,7 @@ bool VoxelSearch<Real, D>::sort_into_voxels(const TheProblem& problem, const The
   statistics_.grid.n_voxels += level.voxels.size();
   level.sorted.resize(end);
   Entry* const sorted = level.sorted.data();
-  const auto place = [&](std::uint32_t Cell::*set) {
+  const auto place = [&](std::uint32_t Counts::*set) {
     return [=](const std::uint32_t* cell_of, const std::uint32_t* entry_of, std::size_t n) {
       for (std::size_t i = 0; i < n; ++i) {
         std::uint32_t& to = cells[cell_of[i]].*set;
@@ -214,8 +214,8 @@ bool VoxelSearch<Real, D>::sort_into_voxels(const TheProblem& problem, const The
       return true;
     };
   };
-  return spread<false, true>(problem, of_a, grid, level, place(&Cell::a)) &&
-         spread<true, true>(problem, of_a, grid, level, place(&Cell::b));
+  return spread<false, true>(problem, of_a, grid, level, place(&Counts::a)) &&
+         spread<true, true>(problem, of_a, grid, level, place(&Counts::b));
 }
 
 template <class Real, std::size_t D>

@@ -49,7 +49,7 @@ class VoxelSearch {
   using TheProblem = Problem<Real, D>;
 
   /// Per cell: the number of objects of each set, then where the next one goes.
-  struct Cell {
+  struct Counts {
     std::uint32_t a = 0, b = 0;
   };
   struct Voxel {
@@ -57,7 +57,7 @@ class VoxelSearch {
   };
   /// The memory of one level of the recursion.
   struct Level {
-    std::vector<Cell> cells;
+    std::vector<Counts> cells;
     std::vector<std::uint64_t> models;  // per cell: 0, model + 1, or several
     Scratch<std::uint32_t> codes;       // per object: RegionGrid::code()
     Scratch<Entry> sorted;              // by voxel

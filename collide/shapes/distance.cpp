@@ -12,22 +12,22 @@ using shapes::sign_of;
 using shapes::way;
 
 /// On which part of a segment the nearest point is.
-enum class Part { from, between, to };
+enum class SegmentPart { from, between, to };
 
-Part nearest_part(const Segment& s, const Point& p) noexcept {
+SegmentPart nearest_part(const Segment& s, const Point& p) noexcept {
   const auto ahead_of = [&](const Point& end) {
     return sign_of(
         [&](auto number) { return dot(way(number, s.from, s.to), way(number, end, p)); });
   };
-  if (ahead_of(s.from) <= 0) return Part::from;
-  return ahead_of(s.to) >= 0 ? Part::to : Part::between;
+  if (ahead_of(s.from) <= 0) return SegmentPart::from;
+  return ahead_of(s.to) >= 0 ? SegmentPart::to : SegmentPart::between;
 }
 
 /// The way from `p` to the nearest point.
 Point offset_to(const Segment& s, const Point& p) noexcept {
-  const Part part = nearest_part(s, p);
-  if (part == Part::from) return difference(s.from, p);
-  if (part == Part::to) return difference(s.to, p);
+  const SegmentPart part = nearest_part(s, p);
+  if (part == SegmentPart::from) return difference(s.from, p);
+  if (part == SegmentPart::to) return difference(s.to, p);
   Point out{};
   for (std::size_t k = 0; k < 3; ++k)
     out[k] = ratio(
@@ -63,9 +63,9 @@ double distance2(const Aabb& object, const Point& p) noexcept {
 }
 
 double distance2(const Segment& object, const Point& p) noexcept {
-  const Part part = nearest_part(object, p);
-  if (part == Part::from) return distance2(object.from, p);
-  if (part == Part::to) return distance2(object.to, p);
+  const SegmentPart part = nearest_part(object, p);
+  if (part == SegmentPart::from) return distance2(object.from, p);
+  if (part == SegmentPart::to) return distance2(object.to, p);
   return ratio(
       [&](auto number) {
         const auto off = cross(way(number, object.from, p), way(number, object.from, object.to));

@@ -31,7 +31,7 @@ Addressed<std::vector<std::uint8_t>> OverlapLoads::shared() {
 }
 
 void OverlapLoads::join() {
-  struct Entry {
+  struct SharedWeight {
     std::uint32_t place;
     GlobalId id;
     VertexId value;  // among those of all sources
@@ -39,7 +39,7 @@ void OverlapLoads::join() {
   };
   std::sort(partial_.begin(), partial_.end(),
             [](const PartialRows& a, const PartialRows& b) { return a.from < b.from; });
-  std::vector<Entry> entries;
+  std::vector<SharedWeight> entries;
   for (const PartialRows& rows : partial_) {
     Source& source = sources_.at(rows.from);
     source.first_value = n_values_;
@@ -53,13 +53,13 @@ void OverlapLoads::join() {
   }
   partial_ = {};
   // By id, as in the rows of one piece; of several copies of an unknown, the first piece's is used.
-  std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
+  std::sort(entries.begin(), entries.end(), [](const SharedWeight& a, const SharedWeight& b) {
     return std::tie(a.place, a.id, a.value) < std::tie(b.place, b.id, b.value);
   });
   for (auto entry = entries.begin(); entry != entries.end();) {
     const std::uint32_t place = entry->place;
     while (entry != entries.end() && entry->place == place) {
-      const Entry& first = *entry;
+      const SharedWeight& first = *entry;
       double weight = 0;
       for (; entry != entries.end() && entry->place == place && entry->id == first.id; ++entry)
         weight += entry->weight;

@@ -1,7 +1,7 @@
 // A chare that holds a piece of a mesh, as couplings (coupling.hpp) use it.
 #pragma once
 
-#include "collide/report.hpp"
+#include "collide/hit_receivers.hpp"
 #include "m2m/parallel/any_piece.hpp"
 #include "runtime/runtime.hpp"
 

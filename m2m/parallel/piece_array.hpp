@@ -1,7 +1,7 @@
 // An array of pieces whose class is not known.
 #pragma once
 
-#include "collide/report.hpp"
+#include "collide/hit_receivers.hpp"
 #include "m2m/parallel/any_piece.hpp"
 #include "runtime/interface.hpp"
 

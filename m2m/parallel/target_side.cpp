@@ -106,7 +106,7 @@ Addressed<NearestQuery> TargetSide::nearest_queries(const MeshView& mesh) {
   std::erase_if(to_ask_, [&](std::uint32_t key) {
     NearestSoFar& so_far = nearest_[key];
     const Point& point = mesh.points[static_cast<std::size_t>(so_far.row)];
-    const NearestParts::Part next = nearest_parts_.next(point, so_far.asked);
+    const NearestParts::RankedPart next = nearest_parts_.next(point, so_far.asked);
     if (next == NearestParts::none || next.squared_distance > so_far.squared_distance) return true;
     so_far.asked = next;
     NearestQuery& query = queries[sources_[static_cast<std::size_t>(next.number)]];

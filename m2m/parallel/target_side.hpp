@@ -88,7 +88,7 @@ class TargetSide {
     GlobalId id = std::numeric_limits<GlobalId>::max();
     VertexId vertex = -1;
     collide::OwnerId source{};
-    NearestParts::Part asked{};
+    NearestParts::RankedPart asked{};
   };
   Cover cover_;
   std::map<collide::OwnerId, Asked> asked_;

@@ -35,10 +35,10 @@ NearestParts::NearestParts(std::span<const Aabb> boxes, const Aabb& queries) {
   }
 }
 
-NearestParts::Part NearestParts::next(const Point& p, const Part& last) const {
-  Part best = none;
+NearestParts::RankedPart NearestParts::next(const Point& p, const RankedPart& last) const {
+  RankedPart best = none;
   for (std::size_t i = 0; i < boxes_.size(); ++i) {
-    const Part part{squared_distance(p, boxes_[i]), numbers_[i]};
+    const RankedPart part{squared_distance(p, boxes_[i]), numbers_[i]};
     if (part > last && part < best) best = part;
   }
   return best;

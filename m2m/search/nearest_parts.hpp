@@ -15,13 +15,13 @@ namespace tess::m2m {
 class NearestParts {
  public:
   /// A part, and the distance of its box from a given point.
-  struct Part {
+  struct RankedPart {
     double squared_distance = -1;
     std::int32_t number = -1;
-    friend auto operator<=>(const Part&, const Part&) = default;
+    friend auto operator<=>(const RankedPart&, const RankedPart&) = default;
   };
-  static constexpr Part none{std::numeric_limits<double>::infinity(),
-                             std::numeric_limits<std::int32_t>::max()};
+  static constexpr RankedPart none{std::numeric_limits<double>::infinity(),
+                                   std::numeric_limits<std::int32_t>::max()};
 
   NearestParts() = default;
   /// `boxes`: of all parts; lo > hi for a part without vertices. `queries`: a box around all points
@@ -29,8 +29,8 @@ class NearestParts {
   NearestParts(std::span<const Aabb> boxes, const Aabb& queries);
 
   /// The part that follows `last` in the order of (distance of box, number), or `none` at the end.
-  /// The first call takes Part{}.
-  [[nodiscard]] Part next(const Point& p, const Part& last) const;
+  /// The first call takes RankedPart{}.
+  [[nodiscard]] RankedPart next(const Point& p, const RankedPart& last) const;
 
   template <class Ar>
   void serialize(Ar& ar) {

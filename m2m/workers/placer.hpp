@@ -214,7 +214,7 @@ class Placer : public Group<Placer> {
   }
   /// A part under construction. The corners of its tetrahedra are ids in the whole mesh if there is
   /// a halo, and otherwise positions in `asked`.
-  struct Part {
+  struct Draft {
     MeshPart mesh{};
     std::vector<PartPoint> points{};  // known so far; of the vertices asked, in their order
     std::vector<VertexId> asked{};    // in the queries under way, ascending
@@ -254,7 +254,7 @@ class Placer : public Group<Placer> {
   [[nodiscard]] GlobalId first_unused_of(std::int32_t part) const {
     return (part * setup_.n_points + setup_.n_parts - 1) / setup_.n_parts;
   }
-  [[nodiscard]] Part& part(std::int32_t k) {
+  [[nodiscard]] Draft& part(std::int32_t k) {
     return parts_[static_cast<std::size_t>(k - first_part_)];
   }
   template <class List>
@@ -281,10 +281,10 @@ class Placer : public Group<Placer> {
   template <auto Handler>
   void send_queries();
   [[nodiscard]] PointAnswer answer(const PointQuery& query) const;
-  static void index_tets(Part& part);
+  static void index_tets(Draft& part);
   void build(std::int32_t k, const std::vector<Formula>& formulas, FirstError& error);
   /// Fills the rows of the part with the values of formulas.
-  void evaluate(Part& part, const std::vector<Formula>& formulas, FirstError& error) const;
+  void evaluate(Draft& part, const std::vector<Formula>& formulas, FirstError& error) const;
 
   PlacerSetup setup_;
   std::int32_t n_pes_ = 1, me_ = 0;
@@ -314,7 +314,7 @@ class Placer : public Group<Placer> {
   std::vector<std::uint32_t> users_begin_;  // if there is a halo: per point kept here, in users_
   std::vector<std::int32_t> users_;         // parts that use it
   std::int32_t first_part_ = 0;
-  std::vector<Part> parts_;
+  std::vector<Draft> parts_;
   std::vector<GhostList> ghosts_;
 };
 

@@ -26,7 +26,7 @@ void Placer::finish() {
 }
 
 void Placer::build(std::int32_t k, const std::vector<Formula>& formulas, FirstError& error) {
-  Part& part = this->part(k);
+  Draft& part = this->part(k);
   MeshPart& mesh = part.mesh;
   drop(part.asked);
   if (has_halo()) {
@@ -82,7 +82,7 @@ void Placer::build(std::int32_t k, const std::vector<Formula>& formulas, FirstEr
   evaluate(part, formulas, error);
 }
 
-void Placer::evaluate(Part& part, const std::vector<Formula>& formulas, FirstError& error) const {
+void Placer::evaluate(Draft& part, const std::vector<Formula>& formulas, FirstError& error) const {
   const MeshPart& mesh = part.mesh;
   const std::size_t n_fields = formulas.size();
   part.rows.resize(mesh.points.size() * n_fields);
@@ -126,7 +126,7 @@ void Placer::load_workers() {
   }
   drop(ghosts_);
   for (std::size_t k = 0; k < parts_.size(); ++k) {
-    Part& part = parts_[k];
+    Draft& part = parts_[k];
     setup_.workers[{first_part_ + static_cast<std::int32_t>(k)}].send<&Worker::load>(
         PartLoad{std::move(part.mesh), setup_.fields.size(), std::move(part.rows)});
   }

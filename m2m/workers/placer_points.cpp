@@ -45,7 +45,7 @@ void Placer::ask_points() {
     batch = {};
   }
   drop(batches_);
-  for (Part& part : parts_) {
+  for (Draft& part : parts_) {
     part.mesh.n_own_tets = static_cast<std::int64_t>(part.mesh.tets.size());
     const IdSet vertices(part.mesh.tets);
     part.asked = vertices.list();
@@ -171,7 +171,7 @@ void Placer::receive_points(const PointAnswer& answer) {
   std::size_t user = 0;
   for (std::size_t run = 0; run < answer.parts.size(); ++run) {
     const std::int32_t k = answer.parts[run];
-    Part& to = part(k);
+    Draft& to = part(k);
     auto id = std::lower_bound(to.asked.begin(), to.asked.end(), answer.firsts[run]);
     auto point =
         to.points.begin() + static_cast<std::ptrdiff_t>(to.n_known) + (id - to.asked.begin());
@@ -198,7 +198,7 @@ void Placer::receive_unused(const UnusedPoints& unused) {
 
 void Placer::ask_around() {
   for (std::size_t k = 0; k < parts_.size(); ++k) {
-    Part& part = parts_[k];
+    Draft& part = parts_[k];
     std::sort(part.others.begin(), part.others.end());
     const auto asker = first_part_ + static_cast<std::int32_t>(k);
     for (auto at = part.others.begin(); at != part.others.end();) {
@@ -212,7 +212,7 @@ void Placer::ask_around() {
   }
 }
 
-void Placer::index_tets(Part& part) {
+void Placer::index_tets(Draft& part) {
   const std::vector<Tet>& tets = part.mesh.tets;
   part.own_vertices.emplace(tets);
   part.begin.assign(static_cast<std::size_t>(part.own_vertices->size()) + 1, 0);
@@ -229,7 +229,7 @@ void Placer::index_tets(Part& part) {
 }
 
 void Placer::answer_around(const AroundQuery& query) {
-  Part& asked = part(query.part);
+  Draft& asked = part(query.part);
   if (!asked.own_vertices) index_tets(asked);
   std::vector<std::int32_t> found;
   for (const VertexId v : query.vertices) {
@@ -249,13 +249,13 @@ void Placer::answer_around(const AroundQuery& query) {
 }
 
 void Placer::receive_around(const AroundAnswer& answer) {
-  Part& to = part(answer.asker);
+  Draft& to = part(answer.asker);
   for (std::size_t i = 0; i < answer.ids.size(); ++i)
     to.halo.push_back({answer.ids[i], answer.tets[i]});
 }
 
 void Placer::ask_halo_points() {
-  for (Part& part : parts_) {
+  for (Draft& part : parts_) {
     sort_unique(part.halo);
     std::vector<VertexId> known;
     for (const PartPoint& point : part.points) known.push_back(point.id);

@@ -94,11 +94,11 @@ class IndexTable {
         return &(*pages_[page])[static_cast<std::size_t>(rank) % page_size];
       }
     }
-    if (n_entries_ == 0) return nullptr;
+    if (n_used_ == 0) return nullptr;
     for (std::size_t at = ideal(index);; at = next(at)) {
-      Entry& entry = entries_[at];
-      if (!entry.used) return nullptr;
-      if (entry.index == index) return &entry.record;
+      Bucket& bucket = buckets_[at];
+      if (!bucket.used) return nullptr;
+      if (bucket.index == index) return &bucket.record;
     }
   }
 
@@ -112,14 +112,14 @@ class IndexTable {
         return (*pages_[page])[static_cast<std::size_t>(rank) % page_size];
       }
     }
-    if (8 * (n_entries_ + 1) > 7 * entries_.size()) grow();
+    if (8 * (n_used_ + 1) > 7 * buckets_.size()) grow();
     std::size_t at = ideal(index);
-    for (; entries_[at].used; at = next(at))
-      if (entries_[at].index == index) return entries_[at].record;
-    entries_[at].index = index;
-    entries_[at].used = true;
-    ++n_entries_;
-    return entries_[at].record;
+    for (; buckets_[at].used; at = next(at))
+      if (buckets_[at].index == index) return buckets_[at].record;
+    buckets_[at].index = index;
+    buckets_[at].used = true;
+    ++n_used_;
+    return buckets_[at].record;
   }
 
   /// Frees the record of the index if it holds nothing.
@@ -127,11 +127,11 @@ class IndexTable {
     if constexpr (Coordinates<Index>) {
       if (rank_in(range_, index) >= 0) return;
     }
-    if (n_entries_ == 0) return;
+    if (n_used_ == 0) return;
     std::size_t at = ideal(index);
-    for (; entries_[at].used; at = next(at))
-      if (entries_[at].index == index) break;
-    if (entries_[at].used && entries_[at].record.empty()) erase(at);
+    for (; buckets_[at].used; at = next(at))
+      if (buckets_[at].index == index) break;
+    if (buckets_[at].used && buckets_[at].record.empty()) erase(at);
   }
 
   /// Calls f(index, record) for each record; f may change records but must not create or erase any.
@@ -147,8 +147,8 @@ class IndexTable {
         }
       }
     }
-    for (Entry& entry : entries_)
-      if (entry.used) f(entry.index, entry.record);
+    for (Bucket& bucket : buckets_)
+      if (bucket.used) f(bucket.index, bucket.record);
   }
 
   /// Forgets all hints.
@@ -157,9 +157,9 @@ class IndexTable {
       if (record.state() == IndexState::hint) record.set_unknown();
     };
     for_each(forget);
-    // An entry that moves into the place of an erased one is checked again.
-    for (std::size_t at = 0; at < entries_.size();) {
-      if (entries_[at].used && entries_[at].record.empty()) {
+    // A record that moves into the place of an erased one is checked again.
+    for (std::size_t at = 0; at < buckets_.size();) {
+      if (buckets_[at].used && buckets_[at].record.empty()) {
         erase(at);
       } else {
         ++at;
@@ -168,51 +168,51 @@ class IndexTable {
   }
 
  private:
-  struct Entry {
+  struct Bucket {
     Index index{};
     bool used = false;
     Record record;
   };
-  using Entries = std::vector<Entry>;
+  using Buckets = std::vector<Bucket>;
   static constexpr std::size_t page_size = 256;
   using Page = std::array<Record, page_size>;
 
   /// The slot at which the search for an index begins.
   [[nodiscard]] std::size_t ideal(const Index& index) const {
     __extension__ using Wide = unsigned __int128;
-    return static_cast<std::size_t>(Wide{IndexHash<Index>()(index)} * entries_.size() >> 64U);
+    return static_cast<std::size_t>(Wide{IndexHash<Index>()(index)} * buckets_.size() >> 64U);
   }
   [[nodiscard]] std::size_t next(std::size_t at) const {
-    return at + 1 == entries_.size() ? 0 : at + 1;
+    return at + 1 == buckets_.size() ? 0 : at + 1;
   }
   void grow() {
-    Entries old(std::max<std::size_t>(16, entries_.size() + entries_.size() / 2));
-    old.swap(entries_);
-    for (Entry& entry : old) {
-      if (!entry.used) continue;
-      std::size_t at = ideal(entry.index);
-      while (entries_[at].used) at = next(at);
-      entries_[at] = std::move(entry);
+    Buckets old(std::max<std::size_t>(16, buckets_.size() + buckets_.size() / 2));
+    old.swap(buckets_);
+    for (Bucket& bucket : old) {
+      if (!bucket.used) continue;
+      std::size_t at = ideal(bucket.index);
+      while (buckets_[at].used) at = next(at);
+      buckets_[at] = std::move(bucket);
     }
   }
-  /// Erases an entry and moves later ones forward, so that no search stops at the gap.
+  /// Erases a record and moves later ones forward, so that no search stops at the gap.
   void erase(std::size_t gap) {
-    for (std::size_t at = next(gap); entries_[at].used; at = next(at)) {
-      const std::size_t begin = ideal(entries_[at].index);
-      // The entry may move to the gap unless its search begins behind the gap.
+    for (std::size_t at = next(gap); buckets_[at].used; at = next(at)) {
+      const std::size_t begin = ideal(buckets_[at].index);
+      // The record may move to the gap unless its search begins behind the gap.
       const bool behind = gap <= at ? gap < begin && begin <= at : gap < begin || begin <= at;
       if (behind) continue;
-      entries_[gap] = std::move(entries_[at]);
+      buckets_[gap] = std::move(buckets_[at]);
       gap = at;
     }
-    entries_[gap] = Entry{};
-    --n_entries_;
+    buckets_[gap] = Bucket{};
+    --n_used_;
   }
 
   const Range range_;
   std::vector<std::unique_ptr<Page>> pages_;  // by rank
-  mutable Entries entries_;
-  std::size_t n_entries_ = 0;
+  mutable Buckets buckets_;
+  std::size_t n_used_ = 0;
 };
 
 }  // namespace tess::detail

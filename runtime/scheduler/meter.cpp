@@ -96,7 +96,7 @@ void Meter::end_quantum() {
   LoadRecord& record = *longest_.record;
   record.ticks -= std::min(back, record.ticks);
   if (record.of_pe != nullptr) *record.of_pe -= std::min(back, *record.of_pe);
-  for (LoadRecord::Entry& entry : record.entries)
+  for (LoadRecord::MethodCost& entry : record.entries)
     if (entry.action == longest_.action) entry.ticks -= std::min(back, entry.ticks);
 }
 

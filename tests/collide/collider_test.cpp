@@ -72,7 +72,7 @@ Reports oracle(const Scene& scene, PairRules rules, std::optional<ModelId> only)
 /// A collider, and the arguments of its run().
 struct Collision {
   Collider collider;
-  Report report;
+  HitReceivers receivers;
   Callback<void> taken;
 };
 constexpr double inf = std::numeric_limits<double>::infinity();
@@ -102,7 +102,7 @@ class Client : public Chare<Client, Index1> {
     test::add(reported_, hits);
   }
   Task collide(Collision collision) {
-    co_await collision.collider.run(collision.report, collision.taken);
+    co_await collision.collider.run(collision.receivers, collision.taken);
   }
   /// Starts a collision per round when the objects of the one before are taken.
   Task collide_in_a_row(Collision collision, Scene scene) {
@@ -163,7 +163,7 @@ constexpr Aabb far_box{{100, 100, 100}, {101, 101, 101}};
 struct Fixture {
   Collider collider;
   ArrayProxy<Client> clients;
-  Report report;
+  HitReceivers receivers;
 
   void submit(const Scene& scene) const { clients.broadcast<&Client::submit>(collider, scene); }
 };
@@ -173,7 +173,7 @@ Task set_up(const Problem& problem, Fixture& fixture) {
     fixture.collider = make_collider(problem.options);
     fixture.clients = create<Client>(range(problem.scene.n_clients));
   });
-  fixture.report = {report_to<&Client::receive>(fixture.clients), problem.only};
+  fixture.receivers = {report_to<&Client::receive>(fixture.clients), problem.only};
 }
 
 /// Adds what the clients have received to the rounds of the problem.
@@ -187,7 +187,7 @@ Task collide_rounds(Problem& problem) {
   Scene scene = problem.scene;
   for (scene.round = 0; scene.round < kRounds; ++scene.round) {
     co_await epoch([&] { fixture.submit(scene); });
-    co_await fixture.collider.run(fixture.report);
+    co_await fixture.collider.run(fixture.receivers);
     co_await gather(fixture, problem);
   }
   co_await epoch([&] {
@@ -205,7 +205,7 @@ Task collide_early(Problem& problem) {
     fixture.collider = make_collider(problem.options);
     fixture.clients.broadcast<&Client::submit_early>(fixture.collider, problem.scene);
   });
-  co_await fixture.collider.run(fixture.report);
+  co_await fixture.collider.run(fixture.receivers);
   co_await gather(fixture, problem);
 }
 
@@ -214,7 +214,7 @@ Task collide_bad(Problem& problem) {
   co_await set_up(problem, fixture);
   co_await epoch(
       [&] { fixture.clients.broadcast<&Client::submit_bad>(fixture.collider, problem.scene); });
-  co_await fixture.collider.run(fixture.report);
+  co_await fixture.collider.run(fixture.receivers);
   problem.n_refused = co_await fixture.clients.reduce<&Client::count_refused>();
   problem.n_left_out = co_await fixture.clients.reduce<&Client::count_left_out>();
   co_await gather(fixture, problem);
@@ -234,7 +234,7 @@ Task collide_overlapping(Problem& problem) {
     for (int i = 0; i < 2; ++i)
       for (const Collider& collider : {fixture.collider, other})
         fixture.clients[Index1{problem.scene.n_clients - 1}].send<&Client::collide>(
-            Collision{collider, fixture.report, {}});
+            Collision{collider, fixture.receivers, {}});
   });
   co_await gather(fixture, problem);
 }
@@ -245,7 +245,7 @@ Task collide_in_a_row(Problem& problem) {
   co_await set_up(problem, fixture);
   co_await epoch([&] {
     fixture.clients[Index1{0}].send<&Client::collide_in_a_row>(
-        Collision{fixture.collider, fixture.report, {}}, problem.scene);
+        Collision{fixture.collider, fixture.receivers, {}}, problem.scene);
   });
   co_await gather(fixture, problem);
 }
@@ -258,7 +258,7 @@ Task collide_apart(Problem& problem) {
     if (sent == &problem.n_sent_of_two_models)
       fixture.collider.submit(
           Objects{owner_of(Index1{0}), ModelId{7}, std::array{far_box, far_box}});
-    co_await fixture.collider.run(fixture.report);
+    co_await fixture.collider.run(fixture.receivers);
     const GridCounts grid = (co_await fixture.collider.statistics()).grid;
     *sent = static_cast<std::int64_t>(grid.n_entries - grid.n_left_out);
   }
@@ -274,7 +274,7 @@ Task count_grid(Problem& problem) {
   co_await set_up(problem, fixture);
   fixture.collider.submit(Objects{owner_of(Index1{0}), ModelId{0}, of_model_0});
   fixture.collider.submit(Objects{owner_of(Index1{0}), ModelId{1}, of_model_1, LocalId{4}});
-  co_await fixture.collider.run(fixture.report);
+  co_await fixture.collider.run(fixture.receivers);
   problem.grid = (co_await fixture.collider.statistics()).grid;
 }
 
@@ -283,11 +283,11 @@ Task collide_refused(Problem& problem) {
   co_await set_up(problem, fixture);
   co_await epoch([&] { fixture.submit(problem.scene); });
   try {
-    co_await fixture.collider.run(fixture.report);
+    co_await fixture.collider.run(fixture.receivers);
   } catch (const Error& error) {
     problem.error = error.what();
   }
-  co_await fixture.collider.run(fixture.report);  // nothing is submitted
+  co_await fixture.collider.run(fixture.receivers);  // nothing is submitted
   co_await gather(fixture, problem);
 }
 

@@ -46,7 +46,7 @@ void coupling_of_no_piece(Coupling<NoPiece, NoPiece> coupling) {
 struct Owner : tess::Chare<Owner, tess::Index4> {
   void receive(const tess::collide::Hits& /*hits*/) {}
 };
-tess::collide::Report owner_of_four_dimensions(tess::ArrayProxy<Owner> owners) {
+tess::collide::HitReceivers owner_of_four_dimensions(tess::ArrayProxy<Owner> owners) {
   return {tess::collide::report_to<&Owner::receive>(owners), {}};
 }
 

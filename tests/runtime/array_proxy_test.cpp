@@ -6,7 +6,7 @@
 
 namespace {
 
-class Counter : public tess::Chare<Counter> {
+class SizedCounter : public tess::Chare<SizedCounter> {
  public:
   void set(int value) { value_ = value; }
   [[nodiscard]] int value() const { return value_; }
@@ -64,7 +64,7 @@ tess::Task call_coroutine() {
 
 TEST_CASE("an element is found on its PE only", "[runtime][array]") {
   REQUIRE(tests::run(tess::text(tests::two_processes, ",seed=1"), []() -> tess::Task {
-            const auto nodes = tess::create<Counter>(tess::range(8));
+            const auto nodes = tess::create<SizedCounter>(tess::range(8));
             CHECK(nodes.local({0}) != nullptr);  // the first block of indices is on PE 0
             CHECK(nodes.local({7}) == nullptr);
             CHECK(nodes.local({8}) == nullptr);
@@ -72,7 +72,7 @@ TEST_CASE("an element is found on its PE only", "[runtime][array]") {
             CHECK(tess::n_pes() == 4);
             CHECK(tess::machine().virtual_time());
             const tess::Time before = tess::now();
-            co_await tess::epoch([&] { nodes.broadcast<&Counter::set>(9); });
+            co_await tess::epoch([&] { nodes.broadcast<&SizedCounter::set>(9); });
             CHECK(tess::now() > before);
             CHECK(nodes.local({0})->value() == 9);
           }).exit_code == 0);

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "collide/hit.hpp"
-#include "collide/report.hpp"
+#include "collide/hit_receivers.hpp"
 
 #include <algorithm>
 #include <compare>

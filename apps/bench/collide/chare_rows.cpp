@@ -113,13 +113,13 @@ tess::Task collide(const Problem& problem, const Setting& setting, double& nanos
     collider = make_collider({.rules = {problem.touching, within}});
     clients = tess::create<Client>(tess::range(n_clients_of(setting)));
   });
-  const tess::collide::Report report{report_to<&Client::receive>(clients), {}};
+  const tess::collide::HitReceivers to{report_to<&Client::receive>(clients), {}};
   for (int i = 0; i < 2; ++i) {
     co_await tess::epoch([&] { hand_out(problem, setting, clients); });
     const ProcessWatch processor;
     const Stopwatch elapsed;
     co_await tess::epoch([&] { clients.broadcast<&Client::submit>(collider); });
-    co_await collider.run(report);
+    co_await collider.run(to);
     nanoseconds = setting.n_pes == 1 ? processor.nanoseconds() : elapsed.nanoseconds();
     n_pairs = co_await clients.reduce<&Client::give_count>();
   }

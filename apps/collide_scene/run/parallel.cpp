@@ -53,12 +53,12 @@ tess::Task ParallelCollisions::step(int step, int repeat, StepResult& result,
       clients_[{c}].send<&Client::take>(std::move(piece));
     }
   });
-  const Report report{report_to<&Client::receive>(clients_), {}, Receivers::one_owner};
+  const HitReceivers to{report_to<&Client::receive>(clients_), {}, Receivers::one_owner};
   for (int run = 0; run < repeat; ++run) {
     if (run > 0) co_await tess::epoch([&] { clients_.broadcast<&Client::forget>(); });
     const tess::Time begin = tess::now();
     co_await tess::epoch([&] { clients_.broadcast<&Client::submit>(collider_); });
-    co_await collider_.run(report);
+    co_await collider_.run(to);
     const double seconds = tess::seconds(tess::now() - begin);
     result.seconds = run == 0 ? seconds : std::min(result.seconds, seconds);
     const CollisionStatistics statistics = co_await collider_.statistics();

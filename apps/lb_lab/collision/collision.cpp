@@ -31,8 +31,8 @@ class Collision final : public Stepped {
   tess::Task begin() override { co_return; }
   tess::Task step(std::int32_t iteration) override {
     co_await tess::epoch([&] { owners_.broadcast<&Owner::submit>(collider_, iteration); });
-    const tess::collide::Report report = report_to(owners_, stations_);
-    co_await collider_.run(report);
+    const tess::collide::HitReceivers to = report_to(owners_, stations_);
+    co_await collider_.run(to);
   }
   tess::Task end() override {
     co_await tess::epoch([this] { owners_.broadcast<&Owner::end>(); });

@@ -44,8 +44,8 @@ void Owner::end() {
   destroy();
 }
 
-tess::collide::Report report_to(tess::ArrayProxy<Owner> owners,
-                                tess::GroupProxy<Station> stations) {
+tess::collide::HitReceivers report_to(tess::ArrayProxy<Owner> owners,
+                                      tess::GroupProxy<Station> stations) {
   return {
       tess::Callback<tess::collide::Hits>(lesser_owner, std::in_place, owners.id(), stations.id()),
       {}};

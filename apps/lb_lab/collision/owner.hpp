@@ -32,9 +32,9 @@ class Owner : public tess::Chare<Owner, tess::Index1> {
   std::uint64_t answer_ = 0;
 };
 
-/// A report of hits to owners: to one of the two owners of a pair, once. The PE where the voxel is
-/// has its station charged.
-[[nodiscard]] tess::collide::Report report_to(tess::ArrayProxy<Owner> owners,
-                                              tess::GroupProxy<Station> stations);
+/// The receivers of hits: one of the two owners of a pair, once. The station of the PE where
+/// the voxel is is charged.
+[[nodiscard]] tess::collide::HitReceivers report_to(tess::ArrayProxy<Owner> owners,
+                                                    tess::GroupProxy<Station> stations);
 
 }  // namespace lb_lab

@@ -32,8 +32,8 @@ void exchange_known(Collection& exchange, Attach&& m, Counted /*counted*/) {
   send_to_collection<&attach_arrives>(pe, m.array, pe.id(), m);
 }
 
-struct MergeOutcomes {
-  Balancer::Outcome operator()(const Balancer::Outcome& a, const Balancer::Outcome& b) const {
+struct MergeRoundSums {
+  Balancer::RoundSums operator()(const Balancer::RoundSums& a, const Balancer::RoundSums& b) const {
     return {MergeSums()(a.phase, b.phase), a.n_elements + b.n_elements, a.n_moved + b.n_moved,
             a.moved_bytes + b.moved_bytes};
   }
@@ -161,12 +161,12 @@ void Balancer::entered(Element& element) {
   }
   const auto coordinator = group()[plan_.coordinator];
   switch (barrier_.entered(element)) {
-    case Barrier::Entry::usual:
+    case Barrier::Entrant::usual:
       break;
-    case Barrier::Entry::late:
+    case Barrier::Entrant::late:
       coordinator.send<&Balancer::late_arrival>();
       break;
-    case Barrier::Entry::newcomer:
+    case Barrier::Entrant::newcomer:
       coordinator.send<&Balancer::admit>(pe(), barrier_.hold(element));
       break;
   }
@@ -385,14 +385,14 @@ Task Balancer::distributed_round(Others others) {
       traded.callback());
   co_await traded;
   co_await epoch([this] { group().broadcast<&Balancer::fetch>(); });
-  const Outcome outcome = co_await group().reduce<&Balancer::sum_outcome>();
+  const RoundSums sums = co_await group().reduce<&Balancer::sum_round>();
   Round round;
-  round.n_elements = outcome.n_elements;
+  round.n_elements = sums.n_elements;
   round.n_unknown = before.n_unknown;
-  round.n_moved = outcome.n_moved;
-  round.moved_bytes = outcome.moved_bytes;
+  round.n_moved = sums.n_moved;
+  round.moved_bytes = sums.moved_bytes;
   round.before = before.max_over_average();
-  round.predicted = average > 0 ? outcome.phase.slowest / average : 1;
+  round.predicted = average > 0 ? sums.phase.slowest / average : 1;
   coordinator_->record_distributed(std::move(round));
 }
 
@@ -409,8 +409,8 @@ void Balancer::collect(Others others, const Callback<std::vector<PeReport>>& tar
 
 void Balancer::move(const std::vector<Move>& moves) {
   const Measured::Moved moved = measured_.move(moves);
-  outcome_.n_moved += moved.n_elements;
-  outcome_.moved_bytes += moved.n_bytes;
+  sums_.n_moved += moved.n_elements;
+  sums_.moved_bytes += moved.n_bytes;
 }
 
 void Balancer::resume(std::uint32_t round) {
@@ -448,8 +448,8 @@ void Balancer::prepare(Others others, const Callback<PhaseSums>& target) {
   const std::uint64_t limit =
       plan_.memory_limit_bytes.empty() ? 0 : plan_.memory_limit_bytes[slot(pe())];
   plan_.exchange.local().hold(report, measured_.speed(), limit);
-  outcome_ = {};
-  outcome_.n_elements = report.keys.size();
+  sums_ = {};
+  sums_.n_elements = report.keys.size();
   contribute(MergeSums{}, before, target);
 }
 
@@ -460,10 +460,10 @@ void Balancer::fetch() {
   for (auto& [origin, moves] : wanted) group()[origin].send<&Balancer::move>(std::move(moves));
 }
 
-void Balancer::sum_outcome(const Callback<Outcome>& target) {
+void Balancer::sum_round(const Callback<RoundSums>& target) {
   const PeSummary& summary = plan_.exchange.local().summary();
-  outcome_.phase = {summary.time(), summary.time() * summary.speed, summary.speed};
-  contribute(MergeOutcomes{}, outcome_, target);
+  sums_.phase = {summary.time(), summary.time() * summary.speed, summary.speed};
+  contribute(MergeRoundSums{}, sums_, target);
 }
 
 void Balancer::alarm() {

@@ -51,7 +51,7 @@ class Balancer final : public Group<Balancer>, private ElementWatcher {
     SnapshotIndices indices = SnapshotIndices::none;
   };
   /// The result of a distributed round, summed over PEs.
-  struct Outcome {
+  struct RoundSums {
     PhaseSums phase;
     std::uint64_t n_elements = 0;
     std::uint64_t n_moved = 0;
@@ -101,7 +101,7 @@ class Balancer final : public Group<Balancer>, private ElementWatcher {
   void recall(bool interrupted, const Callback<std::uint64_t>& done);
   void prepare(Others others, const Callback<PhaseSums>& target);
   void fetch();
-  void sum_outcome(const Callback<Outcome>& target);
+  void sum_round(const Callback<RoundSums>& target);
 
   /// Those of a periodic round, which elements' messages would otherwise delay at each of its
   /// steps.
@@ -144,7 +144,7 @@ class Balancer final : public Group<Balancer>, private ElementWatcher {
   bool barrier_is_open_ = false;  // on this PE; before, elements are only measured
   std::uint64_t n_collected_ = 0;
   std::uint64_t n_rounds_seen_ = 0;  // periodic: rounds that this member knows of
-  Outcome outcome_;                  // result of this PE in a distributed round
+  RoundSums sums_;                   // result of this PE in a distributed round
 
   // Only on the coordinator.
   std::unique_ptr<Coordinator> coordinator_;

@@ -54,11 +54,11 @@ void Barrier::join(SyncState& sync, std::uint32_t round) {
   tree_.add_member(round);
 }
 
-Barrier::Entry Barrier::entered(Element& element) {
+Barrier::Entrant Barrier::entered(Element& element) {
   SyncState& sync = sync_of(element);
   const bool first_here = sync.entry == SyncEntry::none;
   const bool created = first_here && Collection::never_moved(element);
-  if (created && n_resumed_ != tree_.joins_at()) return Entry::newcomer;
+  if (created && n_resumed_ != tree_.joins_at()) return Entrant::newcomer;
   if (first_here) join(sync, created ? n_resumed_ : 0);
   tree_.enter(sync.next);
   if (sync.phase == SyncPhase::waits) {
@@ -68,7 +68,7 @@ Barrier::Entry Barrier::entered(Element& element) {
       array_->resume(element);
     }
   }
-  return first_here && !created ? Entry::late : Entry::usual;
+  return first_here && !created ? Entrant::late : Entrant::usual;
 }
 
 std::uint32_t Barrier::hold(Element& element) {

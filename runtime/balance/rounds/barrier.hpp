@@ -37,12 +37,12 @@ class Barrier {
 
   // Events of the array's elements.
 
-  enum class Entry : std::uint8_t {
+  enum class Entrant : std::uint8_t {
     usual,
     late,      ///< a member of round 0 that was under way when balancing started
     newcomer,  ///< it was created here, and the coordinator knows which round it joins: hold()
   };
-  [[nodiscard]] Entry entered(Element& element);
+  [[nodiscard]] Entrant entered(Element& element);
   /// Holds a newcomer until joins() is called with the ticket that is returned.
   [[nodiscard]] std::uint32_t hold(Element& element);
   /// On the coordinator: counts a newcomer of some PE as a member from the open round on, which is

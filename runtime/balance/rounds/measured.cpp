@@ -86,7 +86,7 @@ void Measured::add(Element& element, std::uint64_t round, PeReport& report) {
     report.indices.push_back(element_text(element).substr(array_->name().size()));
   for (const auto& [to, sent] : record.load.sent.entries())
     report.parcels.push_back({record.position, to, sent.bytes, sent.messages});
-  for (const LoadRecord::Entry& entry : record.load.entries) {
+  for (const LoadRecord::MethodCost& entry : record.load.entries) {
     const std::uint32_t action = entry.action->id();
     auto at = std::find_if(report.seconds_by_action.begin(), report.seconds_by_action.end(),
                            [action](const auto& one) { return one.first == action; });

@@ -67,7 +67,7 @@ template <class Types>
 class ScanOfPe final : public KeptScan {
  public:
   using T = typename Types::T;
-  struct Entry {
+  struct Contribution {
     typename Types::Key key;
     T value;
     std::optional<T> first;  ///< of an exclusive scan
@@ -75,22 +75,23 @@ class ScanOfPe final : public KeptScan {
     Callback<typename Types::Result> target;
   };
 
-  void add(Entry&& entry) { entries_.push_back(std::move(entry)); }
+  void add(Contribution&& one) { contributions_.push_back(std::move(one)); }
   void add(ScanOfPe&& more) {
-    entries_.insert(entries_.end(), std::make_move_iterator(more.entries_.begin()),
-                    std::make_move_iterator(more.entries_.end()));
+    contributions_.insert(contributions_.end(),
+                          std::make_move_iterator(more.contributions_.begin()),
+                          std::make_move_iterator(more.contributions_.end()));
   }
 
   /// The first index of each run and its combined value, in the order of indices.
   [[nodiscard]] ScanRuns<Types> runs(const typename Types::Op& op) {
-    std::sort(entries_.begin(), entries_.end(),
-              [](const Entry& a, const Entry& b) { return a.key < b.key; });
+    std::sort(contributions_.begin(), contributions_.end(),
+              [](const Contribution& a, const Contribution& b) { return a.key < b.key; });
     ScanRuns<Types> runs;
-    for (std::size_t i = 0; i < entries_.size(); ++i) {
+    for (std::size_t i = 0; i < contributions_.size(); ++i) {
       if (begins_run(i)) {
-        runs.emplace_back(entries_[i].key, entries_[i].value);
+        runs.emplace_back(contributions_[i].key, contributions_[i].value);
       } else {
-        runs.back().second = combined(op, std::move(runs.back().second), entries_[i].value);
+        runs.back().second = combined(op, std::move(runs.back().second), contributions_[i].value);
       }
     }
     return runs;
@@ -101,17 +102,17 @@ class ScanOfPe final : public KeptScan {
     Element* const contributor = std::exchange(pe.context().element, nullptr);
     std::optional<T> sum;
     std::size_t run = 0;
-    for (std::size_t i = 0; i < entries_.size(); ++i) {
-      Entry& entry = entries_[i];
+    for (std::size_t i = 0; i < contributions_.size(); ++i) {
+      Contribution& one = contributions_[i];
       if (begins_run(i)) sum = std::move(before[run++]);
-      std::optional<T> whole = sum ? combined(op, *sum, entry.value) : entry.value;
-      const DeliveryScope scope(pe, entry.counted.epoch());
-      if (!entry.first) {
-        entry.target(finished(op, *whole));
+      std::optional<T> whole = sum ? combined(op, *sum, one.value) : one.value;
+      const DeliveryScope scope(pe, one.counted.epoch());
+      if (!one.first) {
+        one.target(finished(op, *whole));
       } else if (sum) {
-        entry.target(finished(op, combined(op, std::move(*entry.first), *sum)));
+        one.target(finished(op, combined(op, std::move(*one.first), *sum)));
       } else {
-        entry.target(finished(op, std::move(*entry.first)));
+        one.target(finished(op, std::move(*one.first)));
       }
       sum = std::move(whole);
     }
@@ -120,10 +121,10 @@ class ScanOfPe final : public KeptScan {
 
  private:
   [[nodiscard]] bool begins_run(std::size_t i) const {
-    return !Types::in_runs || i == 0 || !adjoin(entries_[i - 1].key, entries_[i].key);
+    return !Types::in_runs || i == 0 || !adjoin(contributions_[i - 1].key, contributions_[i].key);
   }
 
-  std::vector<Entry> entries_;
+  std::vector<Contribution> contributions_;
 };
 
 /// The runs of a scan on their way to the root, with the PEs that hold them. On the PE of its own
@@ -142,9 +143,9 @@ class ScanPartial final : public Partial {
   static const PartialKind& its_kind() { return kind_; }
   [[nodiscard]] const PartialKind& kind() const override { return kind_; }
 
-  void add(Collection& collection, const Op& op, typename Here::Entry&& entry) {
+  void add(Collection& collection, const Op& op, typename Here::Contribution&& one) {
     require_one_operation(op_, op);
-    open(collection).add(std::move(entry));
+    open(collection).add(std::move(one));
   }
   void merge(Partial&& other) override {
     auto& more = static_cast<ScanPartial&>(other);
@@ -157,7 +158,7 @@ class ScanPartial final : public Partial {
   }
   void leave() override {
     if (kept_ == nullptr) return;
-    parts_.push_back(Part{here_->pe().id(), number_, kept_->runs(op_)});
+    parts_.push_back(PeRuns{here_->pe().id(), number_, kept_->runs(op_)});
     kept_ = nullptr;
     here_ = nullptr;
   }
@@ -178,7 +179,7 @@ class ScanPartial final : public Partial {
     std::sort(places.begin(), places.end(),
               [&at](const RunAt& a, const RunAt& b) { return at(a).first < at(b).first; });
     std::vector<Answer> answers;
-    for (const Part& part : parts_)
+    for (const PeRuns& part : parts_)
       answers.push_back(Answer{part.number, op_, std::vector<std::optional<T>>(part.runs.size())});
     std::optional<T> sum;
     for (const RunAt& place : places) {
@@ -193,7 +194,7 @@ class ScanPartial final : public Partial {
 
  private:
   /// The runs of one report of a PE, and the number by which the PE keeps the contributions.
-  struct Part {
+  struct PeRuns {
     PeId pe;
     std::uint64_t number = 0;
     ScanRuns<Types> runs;
@@ -215,7 +216,7 @@ class ScanPartial final : public Partial {
   explicit ScanPartial(Reader& ar)
       : op_(ar.take<Op>()),
         collection_(ar.take<CollectionId>()),
-        parts_(ar.take<std::vector<Part>>()) {}
+        parts_(ar.take<std::vector<PeRuns>>()) {}
   static std::unique_ptr<Partial> unpack(Reader& ar) {
     return std::unique_ptr<Partial>(new ScanPartial(ar));
   }
@@ -238,7 +239,7 @@ class ScanPartial final : public Partial {
 
   [[no_unique_address]] Op op_;
   CollectionId collection_;
-  std::vector<Part> parts_;
+  std::vector<PeRuns> parts_;
   Collection* here_ = nullptr;  // while open
   Here* kept_ = nullptr;        // while open, in the list of the collection; null otherwise
   std::uint64_t number_ = 0;    // its number there
@@ -255,14 +256,14 @@ void contribute_to_scan(const Key& key, const ToArray& to, const Op& scan_op, T 
   check_target(to.element, target);
   Pe& pe = to.collection.pe();
   const typename Types::Op& op = ScanOp<Op>::of(scan_op);
-  typename Scan::Here::Entry entry{key, std::move(value), std::move(first),
-                                   Counted::sent(pe.completion(), pe.context().epoch), target};
+  typename Scan::Here::Contribution one{key, std::move(value), std::move(first),
+                                        Counted::sent(pe.completion(), pe.context().epoch), target};
   if (Partial* open = to.open_sum(Scan::its_kind()); open != nullptr) {
-    static_cast<Scan*>(open)->add(to.collection, op, std::move(entry));
+    static_cast<Scan*>(open)->add(to.collection, op, std::move(one));
     to.contributed();
   } else {
     auto scan = std::make_unique<Scan>(to.collection, op);
-    scan->add(to.collection, op, std::move(entry));
+    scan->add(to.collection, op, std::move(one));
     to.contribute(std::move(scan));
   }
 }

@@ -27,7 +27,7 @@ void EndRecord::operator()(BalanceRecord* record) const {
 
 void BalanceRecord::pack(Writer& ar, const Meter& meter) const {
   std::vector<PackedEntry> entries;
-  for (const LoadRecord::Entry& entry : load.entries)
+  for (const LoadRecord::MethodCost& entry : load.entries)
     entries.push_back({entry.action->id(), 0, meter.seconds(entry.ticks), entry.calls});
   std::vector<PackedTraffic> traffic;
   for (const auto& [to, sent] : load.sent.entries()) traffic.push_back({to, sent});

@@ -16,7 +16,7 @@ class LedTo {
   /// One past the last reduction that broadcasts up to this one led to; 0 if none is known.
   [[nodiscard]] std::uint32_t end(std::uint32_t broadcast) const {
     std::uint32_t found = 0;
-    for (const Entry& entry : entries_) {
+    for (const ReductionEnd& entry : entries_) {
       if (entry.broadcast > broadcast) break;
       found = entry.end;
     }
@@ -29,26 +29,26 @@ class LedTo {
     if (end(broadcast) > number) return false;
     const auto at = std::lower_bound(
         entries_.begin(), entries_.end(), broadcast,
-        [](const Entry& entry, std::uint32_t least) { return entry.broadcast < least; });
-    const auto last = std::find_if(at, entries_.end(),
-                                   [&](const Entry& entry) { return entry.end > number + 1; });
-    entries_.insert(entries_.erase(at, last), Entry{broadcast, number + 1});
+        [](const ReductionEnd& entry, std::uint32_t least) { return entry.broadcast < least; });
+    const auto last = std::find_if(
+        at, entries_.end(), [&](const ReductionEnd& entry) { return entry.end > number + 1; });
+    entries_.insert(entries_.erase(at, last), ReductionEnd{broadcast, number + 1});
     return true;
   }
 
   /// Reductions below this one are complete: no element will join there.
   void forget_below(std::uint32_t number) {
     const auto last = std::find_if(entries_.begin(), entries_.end(),
-                                   [&](const Entry& entry) { return entry.end > number; });
+                                   [&](const ReductionEnd& entry) { return entry.end > number; });
     entries_.erase(entries_.begin(), last);
   }
 
  private:
-  struct Entry {
+  struct ReductionEnd {
     std::uint32_t broadcast = 0;
     std::uint32_t end = 0;
   };
-  std::vector<Entry> entries_;
+  std::vector<ReductionEnd> entries_;
 };
 
 }  // namespace tess::detail

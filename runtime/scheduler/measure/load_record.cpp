@@ -34,7 +34,7 @@ void LoadRecord::continue_at(double new_speed) {
     return static_cast<std::uint64_t>(static_cast<double>(measured) * factor);
   };
   ticks = scaled(ticks);
-  for (Entry& entry : entries) entry.ticks = scaled(entry.ticks);
+  for (MethodCost& entry : entries) entry.ticks = scaled(entry.ticks);
   speed = new_speed;
 }
 

@@ -39,7 +39,7 @@ class SentTable {
 };
 
 struct LoadRecord {
-  struct Entry {
+  struct MethodCost {
     const Action* action = nullptr;
     std::uint64_t ticks = 0;
     std::uint64_t calls = 0;
@@ -52,8 +52,8 @@ struct LoadRecord {
     phase,  ///< since the beginning of the phase
   };
 
-  std::uint64_t ticks = 0;     ///< ticks of the PE's meter, at `speed`
-  std::vector<Entry> entries;  ///< by entry method
+  std::uint64_t ticks = 0;          ///< ticks of the PE's meter, at `speed`
+  std::vector<MethodCost> entries;  ///< by entry method
   SentTable sent;
   std::uint64_t* of_pe = nullptr;  ///< the PE's sum of the ticks of all such elements
   double speed = 1;                ///< relative speed of the PE that measures
@@ -68,7 +68,7 @@ struct LoadRecord {
   void spend(const Action* action, std::uint64_t spent) {
     ticks += spent;
     if (of_pe != nullptr) *of_pe += spent;
-    for (Entry& entry : entries) {
+    for (MethodCost& entry : entries) {
       if (entry.action != action) continue;
       entry.ticks += spent;
       ++entry.calls;

@@ -35,7 +35,7 @@ void PriorityQueue::begin_run(Link* link, std::int64_t priority) {
   unused_.pop_back();
   runs_[at] = Run{priority, link, link};
   newest_[slot(priority)] = at;
-  heap_.push_back(Entry{priority, n_begun_++, at});
+  heap_.push_back(QueuedRun{priority, n_begun_++, at});
   std::push_heap(heap_.begin(), heap_.end(), later);
 }
 

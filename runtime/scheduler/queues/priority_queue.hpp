@@ -33,13 +33,13 @@ class PriorityQueue {
 
   /// Calls visit(link) for every message, in any order.
   void for_each(const auto& visit) const {
-    for (const Entry& entry : heap_)
+    for (const QueuedRun& entry : heap_)
       for (const Link* link = runs_[entry.run].first; link != nullptr; link = link->next)
         visit(link);
   }
 
  private:
-  struct Entry {
+  struct QueuedRun {
     std::int64_t priority;
     std::uint64_t number;
     std::uint32_t run;
@@ -59,7 +59,7 @@ class PriorityQueue {
 
   std::size_t size_ = 0;
   std::uint64_t n_begun_ = 0;
-  std::vector<Entry> heap_;
+  std::vector<QueuedRun> heap_;
   std::vector<Run> runs_;
   std::vector<std::uint32_t> unused_;            // places in runs_
   std::array<std::uint32_t, n_slots> newest_{};  // a place in runs_: that of this priority, or not

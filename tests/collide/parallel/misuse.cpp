@@ -30,12 +30,12 @@ Task misuse(const std::string& where, double slack) {
   co_await epoch([&] { collider = make_collider({.slack = slack}); });
   const auto clients = create<Client>(each_pe);
   co_await epoch([&] { clients.broadcast<&Client::submit>(collider); });
-  const Report report{report_to<&Client::receive>(clients), {}};
-  Task first = collider.run(report);
+  const HitReceivers to{report_to<&Client::receive>(clients), {}};
+  Task first = collider.run(to);
   if (where == "main") collider.destroy();
   if (where == "client") clients[my_pe()].send<&Client::destroy_collider>(collider);
   co_await first;
-  co_await collider.run(report);  // of nothing
+  co_await collider.run(to);  // of nothing
   co_await epoch([&] { collider.destroy(); });
   print("no misuse\n");
 }

@@ -111,8 +111,8 @@ Task collide_needles(NeedleScene setting, NeedlePairs& outcome) {
     clients = create<NeedleOwner>(range(n_clients), setting);
   });
   co_await epoch([&] { clients.broadcast<&NeedleOwner::submit>(collider); });
-  const Report report{report_to<&NeedleOwner::receive>(clients), {}, Receivers::one_owner};
-  co_await collider.run(report);
+  const HitReceivers to{report_to<&NeedleOwner::receive>(clients), {}, Receivers::one_owner};
+  co_await collider.run(to);
   outcome.pairs = co_await clients.reduce<&NeedleOwner::give_pairs>();
   std::sort(outcome.pairs.begin(), outcome.pairs.end());
   outcome.n_hits = co_await clients.reduce<&NeedleOwner::give_hits>();
@@ -238,8 +238,8 @@ std::int64_t n_received(const TwoObjects& objects, const ColliderOptions& option
       owners = create<OwnerOfOne>(range(2));
     });
     co_await epoch([&] { owners.broadcast<&OwnerOfOne::submit>(collider, objects); });
-    const Report report{report_to<&OwnerOfOne::receive>(owners), {}};
-    co_await collider.run(report);
+    const HitReceivers to{report_to<&OwnerOfOne::receive>(owners), {}};
+    co_await collider.run(to);
     n = co_await owners.reduce<&OwnerOfOne::give>();
   };
   test::Machine{.pes = 2, .per_process = 1, .seed = 3}.run(program).require_success();

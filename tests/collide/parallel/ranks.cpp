@@ -143,9 +143,9 @@ class Client : public Chare<Client> {
 Task collide_round(Collider collider, ArrayProxy<Client> clients, std::int32_t round,
                    std::optional<ModelId> only = {}) {
   const std::int32_t n_clients = 2 * n_pes();
-  const Report report{report_to<&Client::receive>(clients), only, receivers_in(round)};
+  const HitReceivers to{report_to<&Client::receive>(clients), only, receivers_in(round)};
   co_await epoch([&] { clients.broadcast<&Client::submit>(collider, round); });
-  co_await collider.run(report);
+  co_await collider.run(to);
   const Answer answer = co_await clients.reduce<&Client::gather>(),
                expected = oracle(n_clients, round, only);
   TESS_CHECK(answer == expected, "round ", round, ": ", answer.n, " hits were reported, ",

@@ -64,9 +64,9 @@ std::vector<std::int64_t> received(const std::string& option, Receivers receiver
       rows = create<Row>(range(2));
     });
     co_await epoch([&] { rows.broadcast<&Row::submit>(collider, n_each); });
-    const Report report{report_to<&Row::receive>(rows), {}, receivers};
+    const HitReceivers to{report_to<&Row::receive>(rows), {}, receivers};
     const Time begin = now();
-    co_await collider.run(report);
+    co_await collider.run(to);
     if (time != nullptr) *time = now() - begin;
     counts = co_await rows.reduce<&Row::gather>();
   };
@@ -115,8 +115,8 @@ std::vector<std::array<std::int32_t, 4>> of_model(const std::string& option, Mod
       clients = create<Mixed>(range(n_owners));
     });
     co_await epoch([&] { clients.broadcast<&Mixed::submit>(collider, boxes_of_each); });
-    const Report report{report_to<&Mixed::receive>(clients), only};
-    co_await collider.run(report);
+    const HitReceivers to{report_to<&Mixed::receive>(clients), only};
+    co_await collider.run(to);
     pairs = co_await clients.reduce<&Mixed::gather>();
   };
   REQUIRE(run(setup, [&]() -> Task { return program(); }) == 0);

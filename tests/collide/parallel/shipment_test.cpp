@@ -54,10 +54,10 @@ unsigned long long n_sent(std::int32_t n_houses, std::int32_t n_collisions) {
       streets = create<Street>(range(2));
     });
     // No pair leaves the PE that finds it: PE 0, which has most of the objects.
-    const Report report{report_to<&Street::receive>(streets), {}, Receivers::one_owner};
+    const HitReceivers to{report_to<&Street::receive>(streets), {}, Receivers::one_owner};
     for (std::int32_t i = 0; i < n_collisions; ++i) {
       co_await epoch([&] { streets.broadcast<&Street::submit>(collider, n_houses); });
-      co_await collider.run(report);
+      co_await collider.run(to);
     }
     n_pairs = co_await streets.reduce<&Street::count>();
   };

@@ -111,15 +111,15 @@ class Mover : public Chare<Mover> {
     contribute(concatenate, std::exchange(received_, {}), std::move(target));
   }
   void give_refused(Callback<std::string> target) { contribute(max, refused_, std::move(target)); }
-  Task collide(Collider collider, Report report, Callback<void> taken) {
-    co_await collider.run(report, taken);
+  Task collide(Collider collider, HitReceivers to, Callback<void> taken) {
+    co_await collider.run(to, taken);
   }
   /// The boxes of a step are submitted as soon as those of the one before are taken.
-  Task collide_in_a_row(Collider collider, Report report, std::int32_t n_steps) {
+  Task collide_in_a_row(Collider collider, HitReceivers to, std::int32_t n_steps) {
     for (std::int32_t step = 0; step < n_steps; ++step) {
       co_await epoch([&] { array().broadcast<&Mover::submit>(collider, step); });
       Future<void> taken;
-      array()[{step % scene_.n_clients}].send<&Mover::collide>(collider, report, taken.callback());
+      array()[{step % scene_.n_clients}].send<&Mover::collide>(collider, to, taken.callback());
       co_await taken;
     }
   }
@@ -146,7 +146,7 @@ struct Outcome {
 struct Movers {
   Collider collider;
   ArrayProxy<Mover> clients;
-  Report report;
+  HitReceivers receivers;
 };
 
 Task begin(const Moving& scene, const ColliderOptions& options, Movers& out) {
@@ -154,7 +154,7 @@ Task begin(const Moving& scene, const ColliderOptions& options, Movers& out) {
     out.collider = make_collider(options);
     out.clients = create<Mover>(range(scene.n_clients), scene);
   });
-  out.report = {report_to<&Mover::receive>(out.clients), scene.only};
+  out.receivers = {report_to<&Mover::receive>(out.clients), scene.only};
 }
 
 Task give_all(const Movers& movers, Outcome& outcome) {
@@ -180,7 +180,7 @@ Task collide_steps(const Moving& scene, std::int32_t n_steps, Outcome& outcome) 
   co_await begin(scene, with_slack(scene), movers);
   for (std::int32_t step = 0; step < n_steps; ++step) {
     co_await epoch([&] { movers.clients.broadcast<&Mover::submit>(movers.collider, step); });
-    co_await movers.collider.run(movers.report);
+    co_await movers.collider.run(movers.receivers);
     co_await give_all(movers, outcome);
     outcome.statistics.push_back(co_await movers.collider.statistics());
   }
@@ -191,7 +191,7 @@ Task collide_in_a_row(const Moving& scene, std::int32_t n_steps, Outcome& outcom
   Movers movers;
   co_await begin(scene, with_slack(scene), movers);
   co_await epoch([&] {
-    movers.clients[{0}].send<&Mover::collide_in_a_row>(movers.collider, movers.report, n_steps);
+    movers.clients[{0}].send<&Mover::collide_in_a_row>(movers.collider, movers.receivers, n_steps);
   });
   co_await give_all(movers, outcome);
   co_await end(movers, outcome);
@@ -207,8 +207,8 @@ Task collide_two_at_once(const std::array<Moving, 2>& scenes, std::int32_t n_ste
     co_await epoch([&] {
       for (const Movers& one : movers) one.clients.broadcast<&Mover::submit>(one.collider, step);
     });
-    Task first = movers[0].collider.run(movers[0].report);
-    Task second = movers[1].collider.run(movers[1].report);
+    Task first = movers[0].collider.run(movers[0].receivers);
+    Task second = movers[1].collider.run(movers[1].receivers);
     Task round = voxels.round();
     co_await first;
     co_await second;
@@ -425,12 +425,12 @@ TEST_CASE("colliders with a slack refuse capsules and coordinates without a cell
       error.clear();
       co_await epoch([&] { movers.clients.broadcast<&Mover::submit>(movers.collider, 0); });
       try {
-        co_await movers.collider.run(movers.report);
+        co_await movers.collider.run(movers.receivers);
       } catch (const Error& caught) {
         error = caught.what();
       }
     }
-    co_await movers.collider.run(movers.report);  // of nothing
+    co_await movers.collider.run(movers.receivers);  // of nothing
     co_await give_all(movers, after);
     co_await end(movers, after);
   };

@@ -93,11 +93,11 @@ tess::Task collide_rounds() {
     collider = make_collider(options);
     clients = tess::create<Client>(tess::range(problem->n_clients));
   });
-  const Report report{report_to<&Client::receive>(clients), problem->only};
+  const HitReceivers to{report_to<&Client::receive>(clients), problem->only};
   for (std::size_t round = look.slack > 0 ? 0 : 1; round < 3; ++round) {
     co_await tess::epoch([&] { clients.broadcast<&Client::submit>(collider, round); });
     try {
-      co_await collider.run(report);
+      co_await collider.run(to);
     } catch (const tess::Error& error) {  // voxels that are too small for 32-bit cells
       const std::string_view why = error.what();
       if (size == 0 || (why.find("voxel size") == why.npos && why.find("voxel grid") == why.npos))

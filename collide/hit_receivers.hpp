@@ -37,7 +37,7 @@ enum class Receivers {
 };
 
 /// The receivers of hits.
-struct Report {
+struct HitReceivers {
   Callback<Hits> call;  ///< called per (voxel, owner, other) with hits
   /// If set, the owner of the object of this model receives a hit, and `receivers` has no effect.
   /// If both objects are of this model, both owners receive it, or the owner of both once. If
