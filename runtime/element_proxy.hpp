@@ -6,7 +6,7 @@
 
 #include "runtime/ask.hpp"
 #include "runtime/collections/arrays/typed_array.hpp"
-#include "runtime/deed.hpp"
+#include "runtime/epoch.hpp"
 #include "runtime/scheduler/pe_action.hpp"
 #include "runtime/sends.hpp"
 

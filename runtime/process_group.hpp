@@ -232,7 +232,9 @@ class ProcessProxy : public Sends<ProcessProxy<G>> {
   ProcessProxy(CollectionId id, ProcessId process) : id_(id), process_(process) {}
 
   friend auto operator<=>(const ProcessProxy&, const ProcessProxy&) = default;
-  [[nodiscard]] std::size_t hash() const { return member().hash(); }
+  [[nodiscard]] std::size_t hash() const {
+    return static_cast<std::size_t>(mix(id_.value ^ static_cast<std::uint64_t>(process_.value)));
+  }
   template <class Ar>
   void serialize(Ar& ar) {
     ar(id_, process_);

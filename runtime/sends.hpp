@@ -47,6 +47,7 @@ struct How {
   [[no_unique_address]] Of of{};
   Demand demand = Demand::none;  ///< none: what the attributes of the entry method say
   bool may_run_now = true;       ///< by inline_when_local
+  friend bool operator==(const How&, const How&) = default;
 };
 
 /// What the verbs use of a proxy `To`:

@@ -157,6 +157,11 @@ struct OnDemand : tess::Group<OnDemand> {
   using EntryAttributes = tess::Attributes<tess::EntryMethod<&OnDemand::step, tess::create_home>>;
 };
 
+// expect: a member of a group is created, moved and destroyed with its group
+void destroys_a_member(tess::GroupProxy<OnDemand> group) {
+  group[tess::PeId{0}].destroy();
+}
+
 // expect: an interface creates no element: its class is not known
 struct Measured {
   virtual ~Measured() = default;

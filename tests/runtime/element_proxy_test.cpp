@@ -66,7 +66,12 @@ void use_as_keys() {
   using Speakers = tess::InterfaceArray<Speaker>;
   check_keys(Speakers(actors), Speakers(others));
   check_keys(Speakers(actors)[{1}], Speakers(actors)[{2}]);
-  check_keys(tess::create<Stage>(tess::each_process), tess::create<Stage>(tess::each_process));
+  const auto stages = tess::create<Stage>(tess::each_process);
+  check_keys(stages, tess::create<Stage>(tess::each_process));
+  check_keys(stages[tess::ProcessId{0}], stages[tess::ProcessId{1}]);
+  check_keys(actors[{1}].with(tess::Priority{1}), actors[{1}].with(tess::Priority{2}));
+  check_keys(actors[{1}].with(tess::create_home), actors[{2}].with(tess::create_home));
+  check_keys(ushers.with(tess::expedited), ushers.with(tess::Priority{0}));
   check_keys(tess::create_read_only(Stage{3}), tess::create_read_only(Stage{3}));
 }
 

@@ -2,9 +2,10 @@
 #include "runtime/sends.hpp"
 
 #include "runtime/machine/threads.hpp"
+#include "runtime/process_group.hpp"
 #include "runtime/runtime.hpp"
 #include "runtime/testing.hpp"
-#include "tests/support/catch.hpp"
+#include "tests/support/over_seeds.hpp"
 
 #include <string>
 #include <vector>
@@ -198,4 +199,72 @@ TEST_CASE("an awaited call creates its element where the entry method's attribut
   tess::Setup setup{tess::make_threads_machine(2), {}};
   REQUIRE(tess::run(setup, [&]() -> tess::Task { return summon(places); }) == 0);
   CHECK(places == std::vector<int>{0, 1, 0});
+}
+
+namespace {
+
+/// Takes a proxy with its way of sending, and uses it as each proxy is used.
+class Relay : public tess::Chare<Relay> {
+ public:
+  using Urgent = tess::With<tess::ElementProxy<Relay, tess::Index1>, tess::Priority>;
+  void use(Urgent to, tess::ArrayProxy<Relay> all) {
+    self().with(tess::Priority{3}).target<&Relay::note>()(3);
+    all.with(tess::Priority{2}).target<&Relay::note>()(2);
+    tess::create_section(all, {{0}}).with(tess::Priority{1}).broadcast<&Relay::note>(1);
+    to.send<&Relay::note>(-1);
+    to.with(tess::expedited).send<&Relay::note>(-2);
+  }
+  void note(int number) { order.push_back(number); }
+  [[nodiscard]] int place() { return tess::my_pe().value; }
+  std::vector<int> order;
+};
+
+class Looker : public tess::Group<Looker> {
+ public:
+  void look(tess::ArrayProxy<Relay> all, tess::Callback<int> target) {
+    contribute(tess::sum, all.ended() ? 0 : static_cast<int>(all.size()), target);
+  }
+  void count(tess::ArrayProxy<Relay> all, tess::Callback<int> target) {
+    contribute(tess::sum, static_cast<int>(all.destroyed_here().first), target);
+  }
+};
+
+struct Shelf {
+  int width = 2;
+  [[nodiscard]] int times(int n) const { return n * width; }
+};
+
+}  // namespace
+
+TEST_CASE("a proxy with a priority is a value: sent, asked, a target", "[runtime][priority]") {
+  tess::Setup setup{tess::make_threads_machine(1), {}};
+  std::vector<int> order;
+  REQUIRE(tess::run(setup, [&order]() -> tess::Task {
+            const auto all = co_await tess::create<Relay>(tess::range(1));
+            co_await tess::epoch(
+                [&] { all[{0}].send<&Relay::use>(all[{0}].with(tess::Priority{-1}), all); });
+            order = all.local({0})->order;
+            CHECK(co_await all[{7}].with(tess::create_home).ask<&Relay::place>() == 0);
+          }) == 0);
+  CHECK(order == std::vector<int>{-2, -1, 1, 2, 3});
+}
+
+TEST_CASE("an awaited creation is known on every PE, an awaited end is over on every PE",
+          "[runtime][proxy]") {
+  tests::over_seeds(200, tests::two_processes, []() -> tess::Task {
+    const auto lookers = tess::create<Looker>(tess::each_pe);
+    const auto all = co_await tess::create<Relay>(tess::range(5));
+    CHECK(co_await lookers.reduce<&Looker::look>(all) == 5 * 4);
+    co_await all[{3}].destroy();
+    CHECK(co_await lookers.reduce<&Looker::count>(all) == 1);
+    co_await all.destroy();
+    CHECK(all.ended());
+    CHECK(co_await lookers.reduce<&Looker::look>(all) == 0);
+    const auto one = co_await tess::create<Relay>(tess::one);
+    CHECK(co_await one.ask<&Relay::place>() >= 0);
+    co_await one.destroy();
+    const auto shelves = co_await tess::create<Shelf>(tess::each_process);
+    CHECK(co_await shelves[tess::ProcessId{1}].ask<&Shelf::times>(21) == 42);
+    shelves.destroy();
+  });
 }

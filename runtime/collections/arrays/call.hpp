@@ -31,7 +31,9 @@ template <class... T>
 // gave, or a Through (interface.hpp).
 
 /// The priority of the call is that which its class gives the entry method.
-struct OfEntry {};
+struct OfEntry {
+  friend bool operator==(const OfEntry&, const OfEntry&) = default;
+};
 
 /// The priority of a call of F with this head.
 template <class C, auto F, class Head>
