@@ -36,8 +36,7 @@ Task one_transfer(const Scene& scene, double& error, TransferSummary& result) {
   };
   co_await epoch(place);
 
-  const TransferOptions options{.policy = Nearest{}};
-  const TransferSummary summary = co_await transfer(source, target, options);
+  const TransferSummary summary = co_await transfer(source, target, {.policy = Nearest{}});
 
   Future<Outcome> outcome;
   target.workers.broadcast<&Worker::gather>(outcome.callback());
