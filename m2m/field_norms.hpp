@@ -29,9 +29,9 @@ struct FieldNorms {
 
 /// Compares the values, and the status that the last transfer into the mesh gave, with the formulas
 /// `truth`, one per component, at the points where they are now, or where the motions `back` lead
-/// them, one after the other. `name`: of the mesh, in errors. Throws Error (bad_argument) if there are not as many formulas
-/// as components, or a formula has a mistake, (bad_value) with the vertex where one is not finite.
-/// Gives the norms per component.
+/// them, one after the other. `name`: of the mesh, in errors. Throws Error (bad_argument) if there
+/// are not as many formulas as components, or a formula has a mistake, (bad_value) with the vertex
+/// where one is not finite. Gives the norms per component.
 TaskOf<std::vector<FieldNorms>> measure_norms(DistributedMesh mesh, std::string name,
                                               std::vector<FormulaField> truth,
                                               std::vector<RigidMotion> back = {});

@@ -44,8 +44,8 @@ struct PlacedMesh {
 };
 
 /// Reads `name` (as read_mesh() does), cuts it by PartitionMethod::curve, and creates the Workers,
-/// which evaluate `fields`. The errors are those of read_mesh(), validate(), make_formula() and sample(). Side sets and node
-/// sets of a file that is read in ranges are not read.
+/// which evaluate `fields`. The errors are those of read_mesh(), validate(), make_formula() and
+/// sample(). Side sets and node sets of a file that is read in ranges are not read.
 TaskOf<PlacedMesh> place(std::string name, PlaceOptions options,
                          std::vector<FormulaField> fields = {});
 

@@ -23,8 +23,8 @@
 //
 // Sample: tests/samples/transfer.cpp
 //
-//     auto first = transfer(a, b, options);
-//     auto second = transfer(a, c, options);
+//     auto first = transfer(a, b, {});
+//     auto second = transfer(a, c, {});
 //     co_await first;
 //     co_await second;
 //

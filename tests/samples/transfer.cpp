@@ -70,9 +70,8 @@ Task two_transfers(const Scene& scene, double& error) {
     c = scatter(scene.mesh_b, {scene.other}, 3, PartitionMethod::hsfc);
   };
   co_await epoch(place);
-  const TransferOptions options{.policy = Keep{}};
-  auto first = transfer(a, b, options);
-  auto second = transfer(a, c, options);
+  auto first = transfer(a, b, {});
+  auto second = transfer(a, c, {});
   co_await first;
   co_await second;
   for (const DistributedMesh& mesh : {b, c}) {
