@@ -14,10 +14,7 @@
 //     co_await tess::epoch([&] { collider = tess::collide::make_collider({}); });
 //     const auto clients = tess::create<Client>(tess::range(8));
 //     co_await tess::epoch([&] { clients.broadcast<&Client::submit>(collider); });
-//     const tess::collide::HitReceivers to{tess::collide::report_to<&Client::receive>(clients), {}};
-//     co_await collider.run(to);
-//
-// They have a name before the co_await: g++ 12 destroys twice an aggregate that is written in one.
+//     co_await collider.run(tess::collide::report_to<&Client::receive>(clients));
 //
 // submit() is a call to the local Manager, so the epoch that makes the collider is awaited first
 // (submit_early() does without). Before a collision, the main coroutine awaits an epoch

@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace tess::collide {
@@ -44,6 +45,13 @@ struct HitReceivers {
   /// neither is, it is not sent.
   std::optional<ModelId> only;
   Receivers receivers = Receivers::both_owners;
+
+  /// They have a constructor because g++ 12 destroys an aggregate twice that is written in a
+  /// co_await expression.
+  // NOLINTNEXTLINE(google-explicit-constructor)
+  HitReceivers(Callback<Hits> call_ = {}, std::optional<ModelId> only_ = {},
+               Receivers receivers_ = Receivers::both_owners)
+      : call(std::move(call_)), only(only_), receivers(receivers_) {}
 
   template <class Ar>
   void serialize(Ar& ar) {

@@ -102,7 +102,7 @@ TaskOf<CellOutcome> transfer_cells(const TetMesh& source, const std::vector<Fiel
   Coupling coupling(from, to, options);
   outcome.search = co_await coupling.search();
   if (!fields.empty()) {
-    if (options.on_phase) options.on_phase("apply");
+    if (options.on_phase != nullptr) (*options.on_phase)("apply");
     co_await coupling.apply<&CellWorker::values, &CellWorker::result>();
   }
   const Outcome all = co_await to.reduce<&CellWorker::gather>(coupling.id());

@@ -102,7 +102,7 @@ struct AnyCoupling::State {
     return is_conservative() && options.target_values == Centring::nodes;
   }
   void enter(const char* phase) const {
-    if (options.on_phase) options.on_phase(phase);
+    if (options.on_phase != nullptr) (*options.on_phase)(phase);
   }
   /// Ends the job if the handle cannot be used: it has no arrays, an array has ended, or a copy of
   /// the handle has destroyed the coupling. `use`: "searched" or "applied".
@@ -231,10 +231,8 @@ Task AnyCoupling::collide_covers() {
       setup.target.broadcast<&AnyPiece::m2m_submit_target>(setup);
     }
   });
-  // Named, because g++ 12 destroys an aggregate twice if it is written in a co_await expression.
-  const collide::HitReceivers to_target{
-      Callback<collide::Hits>(detail::hits_kind, state.target_bytes()), target_model};
-  co_await setup.collider.run(to_target);
+  co_await setup.collider.run(
+      {Callback<collide::Hits>(detail::hits_kind, state.target_bytes()), target_model});
 }
 
 /// Only points that are in no tetrahedron need to know all source pieces, and pieces without

@@ -52,6 +52,7 @@
 
 #include <functional>
 #include <memory>
+#include <type_traits>
 #include <utility>
 
 namespace tess::collide {
@@ -77,9 +78,12 @@ struct CouplingOptions {
   /// others. Targets: nodes, or cells for conservative kinds.
   Centring source_values = Centring::nodes;
   Centring target_values = Centring::nodes;
-  /// Called with the name of each phase ("broad", "narrow") when it starts; may be empty.
-  std::function<void(const char*)> on_phase{};
+  /// Called with the name of each phase ("broad", "narrow") when it starts; may be null. It outlives
+  /// the coupling.
+  const std::function<void(const char*)>* on_phase = nullptr;
 };
+static_assert(std::is_trivially_destructible_v<CouplingOptions>,
+              "g++ 12 destroys an aggregate twice that is written in a co_await expression");
 
 /// Throws Error (bad_argument) if options contradict each other. The first search does that, too.
 void check(const CouplingOptions& options);

@@ -61,7 +61,10 @@ FieldNorms norms_of(const ComponentSums& sums, const NormSums& whole) {
 
 }  // namespace
 
-TaskOf<std::vector<FieldNorms>> measure_norms(DistributedMesh mesh, NormsRequest request) {
+TaskOf<std::vector<FieldNorms>> measure_norms(DistributedMesh mesh, std::string name,
+                                              std::vector<FormulaField> truth,
+                                              std::vector<RigidMotion> back) {
+  const NormsRequest request{std::move(name), std::move(truth), std::move(back)};
   if (request.truth.size() != mesh.n_components)
     fail(ErrorCode::bad_argument, request.mesh, " has ", mesh.n_components, " components, and ",
          request.truth.size(), " formulas are given; give one per component");

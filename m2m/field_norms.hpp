@@ -1,15 +1,16 @@
 // Norms, integrals and the hash of the values of a distributed mesh. Each part contributes to a
 // reduction, so no PE holds more than its parts and, for the hash, an equal range of the values.
 // The results are the same bit for bit for any number of parts, PEs and processes. Call these
-// functions in a coroutine, while no transfer of the mesh is running; give the request a name
-// before the co_await.
+// functions in a coroutine, while no transfer of the mesh is running.
 #pragma once
 
 #include "m2m/field.hpp"
+#include "m2m/rigid_motion.hpp"
 #include "m2m/workers/norm_sums.hpp"
 #include "m2m/workers/scatter.hpp"
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 namespace tess::m2m {
@@ -27,10 +28,13 @@ struct FieldNorms {
 };
 
 /// Compares the values, and the status that the last transfer into the mesh gave, with the formulas
-/// at the points where they are now. Throws Error (bad_argument) if there are not as many formulas
-/// as components, or a formula has a mistake, (bad_value) with the vertex where one is not finite.
-/// Gives the norms per component.
-TaskOf<std::vector<FieldNorms>> measure_norms(DistributedMesh mesh, NormsRequest request);
+/// `truth`, one per component, at the points where they are now, or where the motions `back` lead
+/// them, one after the other. `name`: of the mesh, in errors. Throws Error (bad_argument) if there
+/// are not as many formulas as components, or a formula has a mistake, (bad_value) with the vertex
+/// where one is not finite. Gives the norms per component.
+TaskOf<std::vector<FieldNorms>> measure_norms(DistributedMesh mesh, std::string name,
+                                              std::vector<FormulaField> truth,
+                                              std::vector<RigidMotion> back = {});
 
 /// The components of a field among those of a mesh.
 struct FieldColumns {

@@ -161,18 +161,19 @@ TaskOf<PlacedMesh> place_ranges(PlacerSetup setup, const TetMesh* whole) {
   co_return placed;
 }
 
-PlacerSetup setup_of(std::string shown_name, PlaceOptions options) {
+PlacerSetup setup_of(std::string shown_name, PlaceOptions options,
+                     std::vector<FormulaField> fields) {
   if (options.n_parts < 1)
     fail(ErrorCode::bad_argument, "cannot cut a mesh into ", options.n_parts,
          " parts; choose at least 1");
   if (options.halo_layers < 0)
     fail(ErrorCode::bad_argument, "a halo of ", options.halo_layers, " layers; choose 0 or more");
-  for (const FormulaField& field : options.fields) (void)make_formula(field.name, field.domain);
+  for (const FormulaField& field : fields) (void)make_formula(field.name, field.domain);
   PlacerSetup setup;
   setup.shown_name = std::move(shown_name);
   setup.n_parts = options.n_parts;
   setup.halo_layers = options.halo_layers;
-  setup.fields = std::move(options.fields);
+  setup.fields = std::move(fields);
   return setup;
 }
 
@@ -198,17 +199,18 @@ std::unique_ptr<MeshRanges> take_ranges(const std::string& name, PlacerSetup& se
 
 }  // namespace
 
-TaskOf<PlacedMesh> place(const TetMesh* mesh, PlaceOptions options) {
-  PlacerSetup setup = setup_of(mesh->name, std::move(options));
+TaskOf<PlacedMesh> place(const TetMesh* mesh, PlaceOptions options,
+                         std::vector<FormulaField> fields) {
+  PlacerSetup setup = setup_of(mesh->name, options, std::move(fields));
   take_sizes(*mesh, setup);
   co_return co_await place_ranges(std::move(setup), mesh);
 }
 
-TaskOf<PlacedMesh> place(std::string name, PlaceOptions options) {
-  PlacerSetup setup = setup_of(name, options);
+TaskOf<PlacedMesh> place(std::string name, PlaceOptions options, std::vector<FormulaField> fields) {
+  PlacerSetup setup = setup_of(name, options, fields);
   if (take_ranges(name, setup) == nullptr) {
     const TetMesh mesh = read_mesh(name);
-    co_return co_await place(&mesh, std::move(options));
+    co_return co_await place(&mesh, options, std::move(fields));
   }
   co_return co_await place_ranges(std::move(setup), nullptr);
 }
@@ -222,7 +224,7 @@ bool is_read_in_ranges(const std::string& name) {
 }
 
 TaskOf<MeshSurvey> survey(std::string name, std::vector<FormulaField> fields) {
-  PlacerSetup setup = setup_of(name, {1, 0, std::move(fields)});
+  PlacerSetup setup = setup_of(name, {}, std::move(fields));
   setup.is_survey = true;
   if (auto ranges = take_ranges(name, setup)) {
     std::string skipped = ranges->skipped;

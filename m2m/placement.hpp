@@ -23,19 +23,18 @@
 
 #include <cstdint>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 namespace tess::m2m {
 
-///     PlaceOptions options{.n_parts = 16};
-///     const PlacedMesh placed = co_await place("a.exo", options);
-///
-/// Give the options a name first: g++ 12 fails on an aggregate in a `co_await` expression.
+///     const PlacedMesh placed = co_await place("a.exo", {.n_parts = 16});
 struct PlaceOptions {
   std::int32_t n_parts = 1;
   std::int32_t halo_layers = 0;
-  std::vector<FormulaField> fields{};
 };
+static_assert(std::is_trivially_destructible_v<PlaceOptions>,
+              "g++ 12 destroys an aggregate twice that is written in a co_await expression");
 
 /// What place() knows of a mesh.
 struct PlacedMesh {
@@ -44,13 +43,15 @@ struct PlacedMesh {
   MeshCensus census{};
 };
 
-/// Reads `name` (as read_mesh() does), cuts it by PartitionMethod::curve, and creates the Workers.
-/// The errors are those of read_mesh(), validate(), make_formula() and sample(). Side sets and node
-/// sets of a file that is read in ranges are not read.
-TaskOf<PlacedMesh> place(std::string name, PlaceOptions options);
+/// Reads `name` (as read_mesh() does), cuts it by PartitionMethod::curve, and creates the Workers,
+/// which evaluate `fields`. The errors are those of read_mesh(), validate(), make_formula() and
+/// sample(). Side sets and node sets of a file that is read in ranges are not read.
+TaskOf<PlacedMesh> place(std::string name, PlaceOptions options,
+                         std::vector<FormulaField> fields = {});
 
 /// The same for a mesh in the memory of this PE, which it must outlive.
-TaskOf<PlacedMesh> place(const TetMesh* mesh, PlaceOptions options);
+TaskOf<PlacedMesh> place(const TetMesh* mesh, PlaceOptions options,
+                         std::vector<FormulaField> fields = {});
 
 /// What survey() finds.
 struct MeshSurvey {

@@ -33,7 +33,7 @@ TaskOf<TransferSummary> transfer(DistributedMesh source, DistributedMesh target,
   Transfer handle(source, target, options);
   TransferSummary summary;
   summary.search = co_await handle.search();
-  if (options.on_phase) options.on_phase("apply");
+  if (options.on_phase != nullptr) (*options.on_phase)("apply");
   const Time start = now();
   co_await handle.apply();
   summary.apply = seconds(now() - start);

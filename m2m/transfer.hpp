@@ -11,15 +11,11 @@
 //     };
 //     co_await epoch(place);
 //
-//     const TransferOptions options{.policy = Nearest{}};
-//     const TransferSummary summary = co_await transfer(source, target, options);
+//     const TransferSummary summary = co_await transfer(source, target, {.policy = Nearest{}});
 //
 //     Future<Outcome> outcome;
 //     target.workers.broadcast<&Worker::gather>(outcome.callback());
 //     const Outcome all = co_await outcome;
-//
-// Options have a name before the co_await: g++ 12 destroys an aggregate twice that is written in
-// one, and with it what on_phase holds. The same goes for place() and transfer_cells().
 //
 // The result depends only on the two meshes and the fields: not on the number of PEs or parts, the
 // voxels, or the order of messages. A mesh can be source and target of any number of transfers,
@@ -27,8 +23,8 @@
 //
 // Sample: tests/samples/transfer.cpp
 //
-//     auto first = transfer(a, b, options);
-//     auto second = transfer(a, c, options);
+//     auto first = transfer(a, b, {});
+//     auto second = transfer(a, c, {});
 //     co_await first;
 //     co_await second;
 //

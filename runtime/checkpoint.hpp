@@ -55,25 +55,22 @@ namespace tess {
 /// be written, or if the folder has checkpoints of another run: of one that is neither this run nor
 /// one that this run, or one before it, went on with by restart() (if the folder has one of these,
 /// those of another restart from it count as its own); then the run can go on. The state is packed
-/// once all messages are done, as the elements are, and lives until the task ends. Give the options
-/// a name first: g++ 12 fails on an aggregate in a `co_await` expression.
+/// once all messages are done, as the elements are, and lives until the task ends. `note`: a text
+/// for people in the manifest, such as the program's options and the step.
 template <class State>
 [[nodiscard]] Task checkpoint(const std::string& folder, const State& state,
-                              const CheckpointOptions& options) {
+                              const CheckpointOptions& options = {}, std::string note = {}) {
   return detail::write_checkpoint(
-      folder, std::string(name_of_type<State>), [&state] { return to_bytes(state); }, options);
+      folder, std::string(name_of_type<State>), [&state] { return to_bytes(state); }, options,
+      std::move(note));
 }
 /// A temporary changes no more: it is packed at once.
 template <class State>
 [[nodiscard]] Task checkpoint(const std::string& folder, const State&& state,
-                              const CheckpointOptions& options) {
+                              const CheckpointOptions& options = {}, std::string note = {}) {
   return detail::write_checkpoint(
       folder, std::string(name_of_type<State>), [bytes = to_bytes(state)] { return bytes; },
-      options);
-}
-template <class State>
-[[nodiscard]] Task checkpoint(const std::string& folder, State&& state) {
-  return checkpoint(folder, std::forward<State>(state), CheckpointOptions());
+      options, std::move(note));
 }
 
 /// The latest finished checkpoint in a folder as this process sees it, as its path; empty if there

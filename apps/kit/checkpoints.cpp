@@ -100,12 +100,10 @@ void Checkpoints::take(Values saved, std::int32_t step, std::int32_t n_steps) {
   tess::print("continues after step ", step, "\n");
 }
 
-tess::CheckpointOptions Checkpoints::described(std::int32_t step) const {
-  tess::CheckpointOptions how;
-  how.buddy_copies = buddy_copies_;
-  how.note = tess::text("after step ", step);
-  for (const auto& [name, value] : problem_) how.note += tess::text(" ", name, " ", value);
-  return how;
+std::string Checkpoints::note_of(std::int32_t step) const {
+  std::string note = tess::text("after step ", step);
+  for (const auto& [name, value] : problem_) note += tess::text(" ", name, " ", value);
+  return note;
 }
 
 }  // namespace kit

@@ -74,8 +74,7 @@ class Checkpoints {
   tess::Task save_if_due(const State& state, std::int32_t from, std::int32_t last) {
     if (!is_due(from, state.step)) co_return;
     const Saved<State> saved{state, last, problem_};
-    const tess::CheckpointOptions how = described(state.step);
-    co_await tess::checkpoint(folder_, saved, how);
+    co_await tess::checkpoint(folder_, saved, {.buddy_copies = buddy_copies_}, note_of(state.step));
   }
 
  private:
@@ -97,7 +96,7 @@ class Checkpoints {
   void check_every();
   void take(Values saved, std::int32_t step, std::int32_t n_steps);
   [[nodiscard]] bool is_due(std::int32_t from, std::int32_t step);
-  [[nodiscard]] tess::CheckpointOptions described(std::int32_t step) const;
+  [[nodiscard]] std::string note_of(std::int32_t step) const;
 
   std::string folder_, restart_, every_ = "100";
   bool buddy_copies_ = false;

@@ -325,7 +325,10 @@ TaskOf<FileFieldsReport> move_file_fields(const FileFieldsRequest& request,
   run.options.tolerance = request.tolerance;
   run.options.clamp = request.clamp;
   run.options.voxel_size = {request.voxel, request.voxel, request.voxel};
-  run.options.on_phase = [&progress](const char* name) { progress.phase(name); };
+  const std::function<void(const char*)> on_phase = [&progress](const char* name) {
+    progress.phase(name);
+  };
+  run.options.on_phase = &on_phase;
   report.source = request.source;
   report.target = request.target;
   const auto elements_of = [](const TetMesh& mesh) -> OtherElements {

@@ -49,7 +49,7 @@ struct Manifest {
   std::int32_t n_processes = 0;
   std::uint64_t program = 0;           ///< Registry::fingerprint()
   std::vector<std::uint64_t> lineage;  ///< Runtime::lineage() of the run that wrote it
-  std::string note;                    ///< CheckpointOptions::note
+  std::string note;                    ///< of checkpoint()
   bool buddy_copies = false;           ///< CheckpointOptions::buddy_copies
   std::vector<FileSum> files;          ///< of PE 0, 1, …, and at last "main"
 };

@@ -288,16 +288,16 @@ void require_own(const std::string& folder, const Listing& listing,
            " is a checkpoint of another run: restart from ", folder, ", or give another folder");
 }
 
-Manifest next_manifest(Pe& pe, const Listing& before, const CheckpointOptions& options) {
-  check_note(options.note);
+Manifest next_manifest(Pe& pe, const Listing& before, bool buddy_copies, std::string note) {
+  check_note(note);
   Manifest manifest;
   manifest.number = before.numbers.empty() ? 1 : before.numbers.front() + 1;
   manifest.n_pes = pe.n_pes();
   manifest.n_processes = pe.machine().n_processes();
   manifest.program = Registry::fingerprint();
   manifest.lineage = pe.runtime().lineage();
-  manifest.note = options.note;
-  manifest.buddy_copies = options.buddy_copies;
+  manifest.note = std::move(note);
+  manifest.buddy_copies = buddy_copies;
   return manifest;
 }
 
@@ -364,7 +364,7 @@ struct Begun {
 };
 
 Task save_all(std::string folder, MainPart main, std::function<std::vector<std::byte>()> pack,
-              CheckpointOptions options, Begun& begun) {
+              CheckpointOptions options, std::string note, Begun& begun) {
   Pe& pe = current_pe();
   OwnFrame own;
   const std::uint64_t frame = co_await own;
@@ -392,7 +392,7 @@ Task save_all(std::string folder, MainPart main, std::function<std::vector<std::
   if (lineage.empty()) lineage.push_back(new_run());
   if (ours.last == 0) ours = co_await find_own(folder, listing, lineage);
   require_own(folder, listing, ours);
-  Manifest manifest = next_manifest(pe, listing, options);
+  Manifest manifest = next_manifest(pe, listing, options.buddy_copies, std::move(note));
   const std::string here = folder_of(folder, manifest.number);
   begun = {listing.hosts.first, manifest.number};
   AskAll<&make_here> made(FolderQuestion{here}, begun.writers);
@@ -449,7 +449,8 @@ void require_main(const std::string& what) {
 }
 
 Task write_checkpoint(std::string folder, std::string state_type,
-                      std::function<std::vector<std::byte>()> pack, CheckpointOptions options) {
+                      std::function<std::vector<std::byte>()> pack, CheckpointOptions options,
+                      std::string note) {
   require_main("checkpoint()");
   const OnlyOne only_one(current_pe().runtime());
   TESS_CHECK(!folder.empty(), "checkpoint() to a path without a name: give a folder");
@@ -459,7 +460,7 @@ Task write_checkpoint(std::string folder, std::string state_type,
   std::exception_ptr error;
   Begun begun;
   try {
-    co_await save_all(folder, std::move(main), std::move(pack), std::move(options), begun);
+    co_await save_all(folder, std::move(main), std::move(pack), options, std::move(note), begun);
   } catch (const Error&) {
     error = std::current_exception();
   } catch (const std::exception& other) {  // of the state's serialize(), the files, or the memory

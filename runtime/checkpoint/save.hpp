@@ -26,7 +26,7 @@ struct Listing;
 /// is under way.
 [[nodiscard]] Task write_checkpoint(std::string folder, std::string state_type,
                                     std::function<std::vector<std::byte>()> pack,
-                                    CheckpointOptions options);
+                                    CheckpointOptions options, std::string note);
 
 /// A number for Runtime::lineage().
 [[nodiscard]] std::uint64_t new_run();

@@ -66,8 +66,7 @@ Task collide_once(ArrayProxy<Client> clients) {
   const Scoped collider(
       make_collider({.voxel_size = {1, 1, 1}, .rules = {.within_model = WithinModel::skip}}));
   co_await epoch([&] { clients.broadcast<&Client::submit>(collider); });
-  const HitReceivers to{report_to<&Client::receive>(clients), {}};
-  co_await collider.run(to);
+  co_await collider.run(report_to<&Client::receive>(clients));
 }
 
 Task collide_often(tess::test::Growth& growth, std::uint64_t& n_pairs) {

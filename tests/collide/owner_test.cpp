@@ -5,8 +5,11 @@
 #include "runtime/testing.hpp"
 #include "tests/support/catch.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <vector>
 
 using namespace tess;
 using namespace tess::collide;
@@ -75,7 +78,24 @@ Task report_to_all(std::int64_t& n) {
       n);
 }
 
+/// A name of a target that is too long to be stored in place.
+void take_nothing(const Callback<Hits>& /*call*/, Hits&& /*hits*/) {}
+const Callback<Hits>::Kind long_kind{naming::name_of<&take_nothing>(), &take_nothing};
+
+Task collide_nothing(const Callback<Hits>& call) {
+  const Collider collider = make_collider({});
+  for (int i = 0; i < 4; ++i) co_await collider.run({call, ModelId{0}});
+}
+
 }  // namespace
+
+TEST_CASE("a report is destroyed once that is written in the expression that awaits the collision",
+          "[collide][owner]") {
+  const std::vector<std::byte> name(100, std::byte{7});
+  const Callback<Hits> call(long_kind, name);
+  test::Machine{.pes = 1}.run([&]() -> Task { return collide_nothing(call); }).require_success();
+  CHECK(std::ranges::equal(call.where(), name));
+}
 
 TEST_CASE("owners may be elements of arrays of two and three dimensions, and members of groups",
           "[collide][parallel]") {

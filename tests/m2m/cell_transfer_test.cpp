@@ -69,12 +69,12 @@ struct CellCase {
 };
 CellOutcome moved_cells(const CellCase& c, std::uint64_t seed, const std::vector<Field>& fields) {
   const test::Machine machine{.pes = 1 + static_cast<int>(seed % 4), .seed = seed};
-  const TransferOptions options{.policy = c.policy, .kind = c.kind};
   CellOutcome outcome;
   machine
       .run([&]() -> Task {
-        outcome = co_await transfer_cells(*c.source, fields, *c.target, c.n_parts,
-                                          PartitionMethod::curve, options);
+        outcome =
+            co_await transfer_cells(*c.source, fields, *c.target, c.n_parts, PartitionMethod::curve,
+                                    {.policy = c.policy, .kind = c.kind});
       })
       .require_success();
   return outcome;
@@ -89,10 +89,9 @@ bool is_exact(TransferKind kind) {
 
 Task attempt_cells(const CellCase& c, std::string* message) {
   const std::vector<Field> fields{cell_field(*c.source)};
-  const TransferOptions options{.policy = c.policy, .kind = c.kind};
   try {
     co_await transfer_cells(*c.source, fields, *c.target, c.n_parts, PartitionMethod::curve,
-                            options);
+                            {.policy = c.policy, .kind = c.kind});
   } catch (const Error& error) {
     *message = error.what();
   }

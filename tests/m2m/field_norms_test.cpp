@@ -55,11 +55,10 @@ Task measure(Layout layout, std::vector<double> second, std::vector<FormulaField
     const std::vector<double> start(b.n_points(), 0.25);
     to = scatter(b, {{"p", 1, start}, {"q", 1, start}}, layout.n_parts, layout.method, layout.halo);
   });
-  const TransferOptions options;
-  co_await transfer(from, to, options);
-  NormsRequest request{"the target", std::move(truth), {{.translation = {-0.1, 0, 0}}}};
+  co_await transfer(from, to, {});
+  const std::vector<RigidMotion> back{{.translation = {-0.1, 0, 0}}};
   try {
-    answer.norms = co_await measure_norms(to, request);
+    answer.norms = co_await measure_norms(to, "the target", std::move(truth), back);
   } catch (const Error& error) {
     answer.refusal = error.what();
   }

@@ -82,8 +82,7 @@ Task transfer_linear(const TetMesh& from, const TetMesh& to, KindCut cut,
     target = scatter(to, {{"f", 1, std::vector<double>(to.n_points())}}, cut.n_parts,
                      PartitionMethod::curve, target_halo_layers(cut.kind));
   });
-  const TransferOptions options{.policy = cut.policy, .kind = cut.kind};
-  summary = co_await transfer(source, target, options);
+  summary = co_await transfer(source, target, {.policy = cut.policy, .kind = cut.kind});
   Future<Outcome> outcome;
   target.workers.broadcast<&Worker::gather>(outcome.callback());
   const Outcome all = co_await outcome;

@@ -66,18 +66,19 @@ struct Case {
 
 Task compare(const Case& c, std::string* difference) {
   const Aabb domain = bounds(c.mesh);
-  const PlaceOptions options{c.n_parts, c.halo_layers, {{"gaussian", domain}, {"x + 2*y", domain}}};
+  const std::vector<FormulaField> formulas{{"gaussian", domain}, {"x + 2*y", domain}};
   std::vector<Field> fields;
-  for (const FormulaField& field : options.fields)
+  for (const FormulaField& field : formulas)
     fields.push_back(sample(c.mesh, field.name, make_formula(field.name, field.domain)));
   DistributedMesh whole;
   co_await epoch(
       [&] { whole = scatter(c.mesh, fields, c.n_parts, PartitionMethod::curve, c.halo_layers); });
   PlacedMesh placed;
   if (c.by_name)
-    placed = co_await place(c.mesh.name, options);
+    placed =
+        co_await place(c.mesh.name, {.n_parts = c.n_parts, .halo_layers = c.halo_layers}, formulas);
   else
-    placed = co_await place(&c.mesh, options);
+    placed = co_await place(&c.mesh, {c.n_parts, c.halo_layers}, formulas);
   Contents want, got;
   co_await inspect(whole, &want);
   co_await inspect(placed.mesh, &got);
@@ -132,17 +133,19 @@ TetMesh odd_mesh() {
   return mesh;
 }
 
-Task message_of_place(const TetMesh* mesh, PlaceOptions options, std::string* message) {
+Task message_of_place(const TetMesh* mesh, PlaceOptions options,
+                      const std::vector<FormulaField>& fields, std::string* message) {
   try {
-    co_await place(mesh, options);
+    co_await place(mesh, options, fields);
   } catch (const Error& error) {
     *message = error.what();
   }
 }
 
-std::string refusal(const TetMesh& mesh, std::int32_t n_pes, const PlaceOptions& options = {4}) {
+std::string refusal(const TetMesh& mesh, std::int32_t n_pes, PlaceOptions options = {4},
+                    const std::vector<FormulaField>& fields = {}) {
   std::string message;
-  const auto main = [&] { return message_of_place(&mesh, options, &message); };
+  const auto main = [&] { return message_of_place(&mesh, options, fields, &message); };
   REQUIRE(tests::run(text("pes=", n_pes), main).exit_code == 0);
   return message;
 }
@@ -263,11 +266,11 @@ TEST_CASE("all PEs together refuse a bad mesh with the message of validate()", "
     const std::string want = test::message_of([&] { validate(mesh); });
     for (const std::int32_t n_pes : {1, 3, 7}) CHECK(refusal(mesh, n_pes) == want);
   }
-  const PlaceOptions options{4, 0, {{"x", bounds(good)}, {"1/(x - 1/3)", bounds(good)}}};
+  const std::vector<FormulaField> fields{{"x", bounds(good)}, {"1/(x - 1/3)", bounds(good)}};
   const std::string want = test::message_of(
       [&] { (void)sample(good, "1/(x - 1/3)", make_formula("1/(x - 1/3)", bounds(good))); });
   REQUIRE_FALSE(want.empty());
-  for (const std::int32_t n_pes : {1, 3, 7}) CHECK(refusal(good, n_pes, options) == want);
+  for (const std::int32_t n_pes : {1, 3, 7}) CHECK(refusal(good, n_pes, {4}, fields) == want);
   CHECK_THAT(refusal(good, 2, {0}), Catch::Contains("into 0 parts"));
   CHECK_THAT(refusal(good, 2, {2, -1}), Catch::Contains("a halo of -1 layers"));
 }

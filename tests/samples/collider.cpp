@@ -35,8 +35,7 @@ tess::Task find_pairs(std::uint64_t& n_pairs) {
   co_await tess::epoch([&] { collider = tess::collide::make_collider({}); });
   const auto clients = tess::create<Client>(tess::range(8));
   co_await tess::epoch([&] { clients.broadcast<&Client::submit>(collider); });
-  const tess::collide::HitReceivers to{tess::collide::report_to<&Client::receive>(clients), {}};
-  co_await collider.run(to);
+  co_await collider.run(tess::collide::report_to<&Client::receive>(clients));
   n_pairs = co_await clients.reduce<&Client::count>();
 }
 

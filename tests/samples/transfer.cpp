@@ -36,8 +36,7 @@ Task one_transfer(const Scene& scene, double& error, TransferSummary& result) {
   };
   co_await epoch(place);
 
-  const TransferOptions options{.policy = Nearest{}};
-  const TransferSummary summary = co_await transfer(source, target, options);
+  const TransferSummary summary = co_await transfer(source, target, {.policy = Nearest{}});
 
   Future<Outcome> outcome;
   target.workers.broadcast<&Worker::gather>(outcome.callback());
@@ -71,9 +70,8 @@ Task two_transfers(const Scene& scene, double& error) {
     c = scatter(scene.mesh_b, {scene.other}, 3, PartitionMethod::hsfc);
   };
   co_await epoch(place);
-  const TransferOptions options{.policy = Keep{}};
-  auto first = transfer(a, b, options);
-  auto second = transfer(a, c, options);
+  auto first = transfer(a, b, {});
+  auto second = transfer(a, c, {});
   co_await first;
   co_await second;
   for (const DistributedMesh& mesh : {b, c}) {

@@ -32,9 +32,8 @@ Task run_kind(Problem& problem, const std::vector<std::int32_t>& trips, kit::Pro
   co_await graph.search();
   const RunMesh& start = problem.meshes.front();
   const auto n_points = start.survey.n_points;
-  NormsRequest request{start.name, {}, {}};
-  for (const std::string& name : problem.field_names)
-    request.truth.push_back({name, problem.domain});
+  std::vector<FormulaField> truth;
+  for (const std::string& name : problem.field_names) truth.push_back({name, problem.domain});
   std::int32_t done = 0;
   double elapsed = 0;
   for (const std::int32_t count : trips) {
@@ -43,7 +42,7 @@ Task run_kind(Problem& problem, const std::vector<std::int32_t>& trips, kit::Pro
     co_await graph.steps();
     elapsed += seconds_since(begin);
     done = count;
-    const std::vector<FieldNorms> norms = co_await measure_norms(meshes.front(), request);
+    const std::vector<FieldNorms> norms = co_await measure_norms(meshes.front(), start.name, truth);
     for (std::size_t f = 0; f < norms.size(); ++f) {
       DriftRow row = row_of(problem.field_names[f], norms[f]);
       const std::vector<FieldColumns> column{{f, 1}};

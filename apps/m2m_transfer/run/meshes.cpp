@@ -16,12 +16,13 @@ TaskOf<std::vector<DistributedMesh>> place_together(const Problem& problem, Tran
                                                     std::int32_t n_parts) {
   std::vector<TaskOf<PlacedMesh>> tasks;
   for (std::size_t m = 0; m < problem.meshes.size(); ++m) {
-    PlaceOptions options{n_parts, halo_for(kind, m, problem.pairs), {}};
+    const PlaceOptions options{n_parts, halo_for(kind, m, problem.pairs)};
+    std::vector<FormulaField> fields;
     for (const std::string& name : problem.field_names)
-      options.fields.push_back({needs_values(m, problem.pairs) ? name : "0", problem.domain});
+      fields.push_back({needs_values(m, problem.pairs) ? name : "0", problem.domain});
     const RunMesh& mesh = problem.meshes[m];
-    tasks.push_back(mesh.mesh ? tess::m2m::place(&*mesh.mesh, options)
-                              : tess::m2m::place(mesh.name, options));
+    tasks.push_back(mesh.mesh ? tess::m2m::place(&*mesh.mesh, options, fields)
+                              : tess::m2m::place(mesh.name, options, fields));
   }
   const std::vector<PlacedMesh> placed = co_await tess::when_all(std::move(tasks));
   std::vector<DistributedMesh> meshes;

@@ -14,14 +14,17 @@ void keep_least(double& least, double value) {
 }  // namespace
 
 GraphRun::GraphRun(Problem& problem, std::vector<DistributedMesh>& meshes, kit::Progress& progress)
-    : problem_(problem), meshes_(meshes), progress_(progress) {
+    : problem_(problem),
+      meshes_(meshes),
+      progress_(progress),
+      on_phase_([&progress](const char* name) { progress.phase(name); }) {
   TransferOptions options;
   options.voxel_size = problem.voxel;
   options.policy = problem.policy;
   options.kind = problem.kind;
   options.tolerance = problem.tolerance;
   options.clamp = problem.clamp;
-  options.on_phase = [&progress](const char* name) { progress.phase(name); };
+  options.on_phase = &on_phase_;
   for (const Pair& pair : problem.pairs)
     transfers_.emplace_back(meshes[pair.source], meshes[pair.target], options);
   found_.resize(problem.pairs.size());
@@ -120,9 +123,9 @@ Task GraphRun::apply(std::size_t pair) {
 
 Task GraphRun::audit_source(std::size_t pair) {
   const std::size_t source = problem_.pairs[pair].source;
-  NormsRequest request{problem_.meshes[source].name, {}, {}};
-  request.truth.resize(problem_.field_names.size(), {"0", {}});
-  audits_[pair].source = co_await measure_norms(meshes_[source], std::move(request));
+  std::vector<FormulaField> zeros(problem_.field_names.size(), {"0", {}});
+  audits_[pair].source =
+      co_await measure_norms(meshes_[source], problem_.meshes[source].name, std::move(zeros));
 }
 
 /// Compares with the formulas at the places where the target is now. The formulas follow the mesh
@@ -130,10 +133,10 @@ Task GraphRun::audit_source(std::size_t pair) {
 Task GraphRun::audit_target(std::size_t pair) {
   const std::size_t target = problem_.pairs[pair].target;
   const RunMesh& mesh = problem_.meshes[target];
-  NormsRequest request{mesh.name, {}, back(target)};
-  for (const std::string& name : problem_.field_names)
-    request.truth.push_back({name, problem_.domain});
-  audits_[pair].target = co_await measure_norms(meshes_[target], std::move(request));
+  std::vector<FormulaField> truth;
+  for (const std::string& name : problem_.field_names) truth.push_back({name, problem_.domain});
+  audits_[pair].target =
+      co_await measure_norms(meshes_[target], mesh.name, std::move(truth), back(target));
   audits_[pair].result_hash = co_await hash_values(meshes_[target], mesh.survey.n_points,
                                                    scalar_columns(problem_.field_names.size()));
 }

@@ -5,6 +5,7 @@
 #include "m2m/field_norms.hpp"
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 namespace m2m_transfer {
@@ -55,6 +56,7 @@ class GraphRun {
   Problem& problem_;
   std::vector<DistributedMesh>& meshes_;
   kit::Progress& progress_;
+  const std::function<void(const char*)> on_phase_;
   std::vector<Transfer> transfers_;
   std::vector<SearchSummary> found_;
   std::vector<PhaseSeconds> seconds_;

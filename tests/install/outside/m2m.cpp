@@ -12,8 +12,7 @@ Task move() {
     source = scatter(from, {f}, 4, PartitionMethod::rcb);
     target = scatter(to, {{"g", 1, std::vector<double>(to.n_points())}}, 4, PartitionMethod::rcb);
   });
-  const TransferOptions options{.policy = Nearest{}};
-  const TransferSummary summary = co_await transfer(source, target, options);
+  const TransferSummary summary = co_await transfer(source, target, {.policy = Nearest{}});
   const auto& n = summary.search.tally.counts;
   print("inside ", n[0], ", boundary ", n[1], "\n");
 }

@@ -73,8 +73,7 @@ Task run_case(const Case& c, Result& result) {
     source = scatter(c.source, c.source_fields, c.n_parts, PartitionMethod::rcb);
     target = scatter(c.target, c.target_fields, c.n_parts + 1, PartitionMethod::hsfc);
   });
-  const TransferOptions options{.voxel_size = c.voxel, .policy = c.policy, .kind = c.kind};
-  co_await transfer(source, target, options);
+  co_await transfer(source, target, {.voxel_size = c.voxel, .policy = c.policy, .kind = c.kind});
   Future<Outcome> outcome;
   target.workers.broadcast<&Worker::gather>(outcome.callback());
   const Outcome all = co_await outcome;

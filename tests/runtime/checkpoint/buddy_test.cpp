@@ -29,9 +29,7 @@ tess::Task steps(std::string folder, std::int32_t first, std::int32_t last, worl
   }
   while (state.step < last) {
     co_await world::advance(state);
-    tess::CheckpointOptions options;
-    options.buddy_copies = true;
-    co_await tess::checkpoint(folder, state, options);
+    co_await tess::checkpoint(folder, state, {.buddy_copies = true});
   }
 }
 
@@ -164,16 +162,14 @@ struct Full {
   static tess::Task main(std::string folder, std::string& error) {
     world::State state;
     co_await steps(folder, 0, 2, state);
-    tess::CheckpointOptions options;
-    options.buddy_copies = true;
     try {
       const FileLimit limit(40);
-      co_await tess::checkpoint(folder, state, options);
+      co_await tess::checkpoint(folder, state, {.buddy_copies = true});
     } catch (const tess::Error& wrong) {
       error = wrong.what();
     }
     co_await world::advance(state);
-    co_await tess::checkpoint(folder, state, options);
+    co_await tess::checkpoint(folder, state, {.buddy_copies = true});
   }
 };
 
@@ -198,10 +194,8 @@ namespace {
 struct Noted {
   static tess::Task main(std::string folder, std::string& error) {
     world::State state;
-    tess::CheckpointOptions options;
-    options.note = "caf\xe9";
     try {
-      co_await tess::checkpoint(folder, state, options);
+      co_await tess::checkpoint(folder, state, {}, "caf\xe9");
     } catch (const tess::Error& wrong) {
       error = wrong.what();
     }

@@ -21,9 +21,7 @@ tess::Task run_to(std::string folder, std::int32_t last, std::string from, bool 
   const std::int32_t first = state.step;
   while (state.step < last) {
     co_await world::advance(state);
-    tess::CheckpointOptions options;
-    options.buddy_copies = buddy;
-    if (state.step % 2 == 0) co_await tess::checkpoint(folder, state, options);
+    if (state.step % 2 == 0) co_await tess::checkpoint(folder, state, {.buddy_copies = buddy});
   }
   tess::print(fmt::format("from {} log {:016x}\n", first, state.log));
 }
