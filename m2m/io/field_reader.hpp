@@ -61,7 +61,5 @@ void check_n_points(const TetMesh& mesh, std::int64_t n_vertices, const std::str
                                                          std::string_view bytes);
 [[nodiscard]] std::unique_ptr<FieldReader> gmsh_fields(const std::string& path,
                                                        std::string_view bytes);
-[[nodiscard]] std::unique_ptr<FieldReader> vtu_fields(const std::string& path,
-                                                      std::string_view bytes);
 
 }  // namespace tess::m2m

@@ -1,8 +1,11 @@
-#include "m2m/io/exodus/exodus_reader.hpp"
-
+// Reads the tetrahedra of an ExodusII file (NetCDF-3 or NetCDF-4) through libexodusII. The library
+// trusts the lengths that a file declares, so netcdf_header.hpp refuses a damaged NetCDF-3 header
+// first. HDF5 guards the metadata of NetCDF-4 by checksums. The library is not reentrant: one
+// thread at a time.
 #include "m2m/io/exodus/exodus_elements.hpp"
 #include "m2m/io/exodus/exodus_file.hpp"
 #include "m2m/io/exodus/exodus_turn.hpp"
+#include "m2m/io/file_format.hpp"
 #include "runtime/core/error.hpp"
 
 #include <algorithm>
@@ -206,11 +209,21 @@ class ExodusReader : private ExodusFile {
   std::vector<Run> element_runs_;  // in file order
 };
 
-}  // namespace
+bool is_netcdf(std::string_view bytes) {
+  return bytes.starts_with("CDF") || bytes.starts_with("\x89HDF");
+}
 
+/// Returns all blocks of TET4 elements in file order as one mesh, with the side and node sets.
+/// Blocks of surface, line and point elements are skipped and counted. Throws Error (bad_mesh) also
+/// for fewer than three dimensions.
 TetMesh read_exodus(const std::string& path, std::string_view bytes) {
   const ExodusTurn turn;
   return ExodusReader(path, bytes).read();
 }
+
+}  // namespace
+
+extern const FileFormat exodus_format{"an ExodusII file (NetCDF)", is_netcdf, read_exodus,
+                                      exodus_fields};
 
 }  // namespace tess::m2m

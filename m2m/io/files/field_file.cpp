@@ -46,17 +46,7 @@ FieldFile::FieldFile(const std::string& path) {
          ": is generated, so it has no fields; give a formula, or a file");
   opened_.reset(new Opened{path, FileBytes(path)});
   const std::string_view bytes = opened_->bytes.view();
-  switch (file_format(opened_->path, bytes)) {
-    case FileFormat::exodus:
-      opened_->reader = exodus_fields(opened_->path, bytes);
-      break;
-    case FileFormat::gmsh:
-      opened_->reader = gmsh_fields(opened_->path, bytes);
-      break;
-    case FileFormat::vtu:
-      opened_->reader = vtu_fields(opened_->path, bytes);
-      break;
-  }
+  opened_->reader = file_format(path, bytes).read_fields(opened_->path, bytes);
 }
 FieldFile::~FieldFile() = default;
 FieldFile::FieldFile(FieldFile&&) noexcept = default;

@@ -1,6 +1,6 @@
 #include "m2m/io/gmsh/gmsh_reader.hpp"
 
-#include "m2m/io/field_reader.hpp"
+#include "m2m/io/file_format.hpp"
 #include "m2m/io/gmsh/gmsh_elements.hpp"
 #include "m2m/io/gmsh/gmsh_format.hpp"
 #include "m2m/io/gmsh/gmsh_scanner.hpp"
@@ -279,5 +279,11 @@ class GmshReader {
 TetMesh read_gmsh(const std::string& path, std::string_view bytes, GmshTags* tags) {
   return GmshReader(path, bytes, tags).read();
 }
+
+extern const FileFormat gmsh_format{
+    "a gmsh file (starts with $MeshFormat)",
+    [](std::string_view bytes) { return bytes.starts_with("$"); },
+    [](const std::string& path, std::string_view bytes) { return read_gmsh(path, bytes); },
+    gmsh_fields};
 
 }  // namespace tess::m2m

@@ -1,6 +1,8 @@
-#include "m2m/io/vtu/vtu_reader.hpp"
-
-#include "m2m/io/field_reader.hpp"
+// Reads the tetrahedra of a VTU file (VTK XML UnstructuredGrid, vtu_file.hpp), or of the files that a
+// .pvtu names. Hexahedra, voxels, wedges, pyramids and quadratic tetrahedra are split, also if they
+// are written as Lagrange cells; cells without a volume are skipped and counted. Pieces are joined
+// in the order of the file; their points are not merged.
+#include "m2m/io/file_format.hpp"
 #include "m2m/io/vtu/vtu_cells.hpp"
 #include "m2m/io/vtu/vtu_file.hpp"
 
@@ -201,7 +203,18 @@ class VtuFields : public FieldReader {
   std::vector<OpenVtuFile> files_;
 };
 
-}  // namespace
+/// True if the first tag of an XML text, behind declarations and comments, is that of VTK.
+bool is_vtk(std::string_view text) {
+  std::size_t at = text.find_first_not_of(" \t\r\n");
+  if (at == std::string_view::npos || text[at] != '<') return false;
+  while (at != std::string_view::npos) {
+    text.remove_prefix(at);
+    const bool is_comment = text.starts_with("<!--");
+    if (!is_comment && !text.starts_with("<?") && !text.starts_with("<!")) break;
+    at = text.find('<', text.find(is_comment ? "-->" : ">"));
+  }
+  return text.starts_with("<VTKFile");
+}
 
 TetMesh read_vtu(const std::string& path, std::string_view bytes) {
   return VtuMeshReader(path).read(open_vtu_files(path, bytes));
@@ -210,5 +223,10 @@ TetMesh read_vtu(const std::string& path, std::string_view bytes) {
 std::unique_ptr<FieldReader> vtu_fields(const std::string& path, std::string_view bytes) {
   return std::make_unique<VtuFields>(path, bytes);
 }
+
+}  // namespace
+
+extern const FileFormat vtu_format{"a VTU file (starts with <VTKFile)", is_vtk, read_vtu,
+                                   vtu_fields};
 
 }  // namespace tess::m2m

@@ -4,11 +4,7 @@
 #include "runtime/balance/strategies/graph.hpp"
 #include "runtime/balance/strategies/greedy.hpp"
 #include "runtime/balance/strategies/greedy_refine.hpp"
-#include "runtime/balance/strategies/hierarchical.hpp"
-#include "runtime/balance/strategies/hilbert.hpp"
-#include "runtime/balance/strategies/rcb.hpp"
 #include "runtime/balance/strategies/refine.hpp"
-#include "runtime/balance/strategies/simple.hpp"
 #include "runtime/balance/strategy.hpp"
 #include "runtime/balance/unknown_loads.hpp"
 #include "runtime/core/error.hpp"
@@ -18,6 +14,16 @@
 #include <fmt/ranges.h>
 
 namespace tess::balance {
+
+// Strategies that only this table calls. Each is in the source of its name, or in simple.cpp, and
+// described there.
+Assignment none(const Snapshot& s);
+Assignment rotate(const Snapshot& s);
+Assignment random(const Snapshot& s, std::uint64_t seed);
+Assignment hierarchical(const Snapshot& s);
+Assignment rcb(const Snapshot& s);
+Assignment hilbert(const Snapshot& s);
+
 namespace {
 
 enum class Needs : std::uint8_t { nothing, positions, scotch };

@@ -1,5 +1,5 @@
-#include "runtime/balance/strategies/hierarchical.hpp"
-
+// Two levels: groups of PEs exchange few elements, and the PEs of a group exchange all of theirs.
+// No step uses all elements on all PEs, so groups can decide in parallel.
 #include "runtime/balance/loads.hpp"
 #include "runtime/balance/strategies/greedy.hpp"
 #include "runtime/balance/strategies/refine.hpp"
@@ -71,9 +71,12 @@ Snapshot inside(const Snapshot& s, const Assignment& placed,
 
 }  // namespace
 
-Assignment hierarchical(const Snapshot& s, std::size_t group_size) {
-  if (group_size == 0)
-    group_size = static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(s.pes.size()))));
+/// PEs form consecutive groups, of about the square root of their number. Elements move between
+/// groups by refine, to the PE of the group that finishes first; then greedy runs within every
+/// group. With memory limits the result can be worse than the present placement.
+Assignment hierarchical(const Snapshot& s) {
+  const auto group_size =
+      static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(s.pes.size()))));
   const Snapshot groups = of_groups(s, group_size);
   Assignment result = enter(s, refine(groups, 1.01), group_size);
   std::vector<std::vector<std::size_t>> members(groups.pes.size());

@@ -1,5 +1,5 @@
-#include "runtime/balance/strategies/rcb.hpp"
-
+// Recursive coordinate bisection (Berger and Bokhari 1987): parts are boxes, so that neighbours in
+// space share a PE.
 #include "runtime/balance/capacity.hpp"
 #include "runtime/balance/honour.hpp"
 #include "runtime/balance/relabel.hpp"
@@ -85,6 +85,9 @@ class Bisection {
 
 }  // namespace
 
+/// Divides the PEs into two halves, and the elements along their longest extent in proportion to
+/// the capacities of the halves, and so on recursively. Throws Error if the snapshot has no
+/// positions. O(n log n log n_pes).
 Assignment rcb(const Snapshot& s) {
   if (s.elements.position.empty() && s.elements.size() > 0)
     fail(ErrorCode::bad_argument,
