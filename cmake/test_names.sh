@@ -22,7 +22,7 @@ while IFS= read -r source; do
 done < <(find tests -name "*.cpp" -not -path "tests/samples/*" | sort)
 shopt -s nullglob
 excepted=" $(sed '/^#/d' tests/headers.txt | tr '\n' ' ') "
-for header in {runtime,collide,collide/dn_field,m2m}/*.hpp; do
+for header in {runtime,runtime/more,collide,collide/dn_field,m2m}/*.hpp; do
   name=${header%.hpp}
   if [[ -f tests/${name}_test.cpp ]]; then
     [[ $excepted != *" $name "* ]] || refuse "tests/headers.txt: $header has a test file"

@@ -44,8 +44,8 @@
 // voxels, or the order of messages.
 #pragma once
 
-#include "m2m/parallel/piece.hpp"
-#include "m2m/parallel/piece_array.hpp"
+#include "m2m/couple/piece.hpp"
+#include "m2m/couple/piece_array.hpp"
 #include "m2m/tally.hpp"
 #include "m2m/transfer_kind.hpp"
 #include "m2m/worst_places.hpp"

@@ -5,9 +5,9 @@
 #pragma once
 
 #include "m2m/field.hpp"
+#include "m2m/mesh/workers/norm_sums.hpp"
+#include "m2m/mesh/workers/scatter.hpp"
 #include "m2m/rigid_motion.hpp"
-#include "m2m/workers/norm_sums.hpp"
-#include "m2m/workers/scatter.hpp"
 
 #include <cstdint>
 #include <string>

@@ -1,7 +1,7 @@
 // Cuts a mesh into parts for an application's own chares (coupling.hpp).
 #pragma once
 
-#include "m2m/partition/split.hpp"
+#include "m2m/mesh/partition/split.hpp"
 #include "m2m/partition_method.hpp"
 
 #include <cstdint>

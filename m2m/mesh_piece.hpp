@@ -22,8 +22,8 @@
 // view_of(mesh) in a mesh_view() of its own, and takes values only for the points that it owns.
 #pragma once
 
+#include "m2m/couple/piece.hpp"
 #include "m2m/mesh_parts.hpp"
-#include "m2m/parallel/piece.hpp"
 
 #include <cstddef>
 #include <cstdint>

@@ -19,7 +19,7 @@
 
 #include "m2m/field.hpp"
 #include "m2m/mesh.hpp"
-#include "m2m/workers/scatter.hpp"
+#include "m2m/mesh/workers/scatter.hpp"
 
 #include <cstdint>
 #include <string>

@@ -43,8 +43,8 @@
 #pragma once
 
 #include "m2m/coupling.hpp"
-#include "m2m/workers/scatter.hpp"
-#include "m2m/workers/worker.hpp"
+#include "m2m/mesh/workers/scatter.hpp"
+#include "m2m/mesh/workers/worker.hpp"
 
 namespace tess::m2m {
 

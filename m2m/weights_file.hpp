@@ -20,7 +20,7 @@
 #pragma once
 
 #include "m2m/mesh.hpp"
-#include "m2m/weights/rows.hpp"
+#include "m2m/rows/weights/rows.hpp"
 
 #include <cstddef>
 #include <cstdint>

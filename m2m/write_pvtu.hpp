@@ -2,7 +2,7 @@
 // a file of its own where it is, and no PE gathers anything.
 #pragma once
 
-#include "m2m/workers/scatter.hpp"
+#include "m2m/mesh/workers/scatter.hpp"
 
 #include <string>
 #include <vector>

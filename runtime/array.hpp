@@ -11,7 +11,7 @@
 
 #include "runtime/array_proxy.hpp"
 #include "runtime/chare.hpp"
-#include "runtime/scheduler/to_all.hpp"
+#include "runtime/pe/to_all.hpp"
 
 #include <concepts>
 #include <memory>

@@ -3,7 +3,7 @@
 // runtime/array.hpp.
 #pragma once
 
-#include "runtime/collections/ending.hpp"
+#include "runtime/arrays/ending.hpp"
 #include "runtime/core/handle.hpp"
 #include "runtime/element_proxy.hpp"
 #include "runtime/epoch.hpp"

@@ -1,7 +1,7 @@
 #include "runtime/ask.hpp"
 
 #include "runtime/core/check.hpp"
-#include "runtime/scheduler/runtime.hpp"
+#include "runtime/pe/runtime.hpp"
 
 namespace tess::detail {
 

@@ -17,11 +17,11 @@
 // element never comes to exist, the end of the run reports the message that waits for it.
 #pragma once
 
+#include "runtime/arrays/typed/call.hpp"
 #include "runtime/callback.hpp"
-#include "runtime/collections/arrays/call.hpp"
 #include "runtime/core/duration.hpp"
 #include "runtime/core/error.hpp"
-#include "runtime/scheduler/pe_action.hpp"
+#include "runtime/pe/pe_action.hpp"
 #include "runtime/task.hpp"
 
 #include <optional>

@@ -12,8 +12,8 @@
 // and coroutines that it starts come again.
 #pragma once
 
-#include "runtime/collections/arrays/array_of.hpp"
-#include "runtime/collections/arrays/contribution.hpp"
+#include "runtime/arrays/typed/array_of.hpp"
+#include "runtime/arrays/typed/contribution.hpp"
 #include "runtime/task.hpp"
 
 namespace tess {

@@ -1,9 +1,9 @@
 #include "runtime/command_line.hpp"
 
+#include "runtime/base/option_state.hpp"
 #include "runtime/base/option_words.hpp"
-#include "runtime/command_line/option_state.hpp"
 #include "runtime/core/check.hpp"
-#include "runtime/machine/mpi.hpp"
+#include "runtime/wire/machine/mpi.hpp"
 
 #include <algorithm>
 #include <limits>

@@ -4,10 +4,10 @@
 // runtime/array.hpp.
 #pragma once
 
+#include "runtime/arrays/typed/typed_array.hpp"
 #include "runtime/ask.hpp"
-#include "runtime/collections/arrays/typed_array.hpp"
 #include "runtime/epoch.hpp"
-#include "runtime/scheduler/pe_action.hpp"
+#include "runtime/pe/pe_action.hpp"
 #include "runtime/sends.hpp"
 
 #include <tuple>

@@ -1,7 +1,7 @@
 #include "runtime/epoch.hpp"
 
 #include "runtime/core/text.hpp"
-#include "runtime/scheduler/pe.hpp"
+#include "runtime/pe/pe.hpp"
 
 namespace tess::detail {
 

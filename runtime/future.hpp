@@ -19,9 +19,9 @@
 #pragma once
 
 #include "runtime/callback.hpp"
-#include "runtime/messages/entry_traits.hpp"
-#include "runtime/scheduler/pe_action.hpp"
+#include "runtime/pe/pe_action.hpp"
 #include "runtime/task.hpp"
+#include "runtime/wire/messages/entry_traits.hpp"
 
 #include <atomic>
 #include <cstddef>

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "runtime/core/duration.hpp"
-#include "runtime/scheduler/pe.hpp"
+#include "runtime/pe/pe.hpp"
 
 #include <cstddef>
 

@@ -1,16 +1,16 @@
 #include "runtime/run.hpp"
 
+#include "runtime/arrays/elements/element.hpp"
 #include "runtime/base/option_words.hpp"
-#include "runtime/collections/elements/element.hpp"
 #include "runtime/core/check.hpp"
 #include "runtime/core/number.hpp"
-#include "runtime/machine/mpi.hpp"
-#include "runtime/machine/simulated.hpp"
-#include "runtime/machine/threads.hpp"
-#include "runtime/scheduler/interfaces/process_monitor.hpp"
-#include "runtime/scheduler/pe.hpp"
-#include "runtime/scheduler/runtime.hpp"
-#include "runtime/service/service.hpp"
+#include "runtime/pe/interfaces/process_monitor.hpp"
+#include "runtime/pe/pe.hpp"
+#include "runtime/pe/runtime.hpp"
+#include "runtime/watch/service/service.hpp"
+#include "runtime/wire/machine/mpi.hpp"
+#include "runtime/wire/machine/simulated.hpp"
+#include "runtime/wire/machine/threads.hpp"
 
 #include <cctype>
 #include <cstdio>

@@ -25,9 +25,9 @@
 
 #include "runtime/core/duration.hpp"
 #include "runtime/core/error.hpp"
-#include "runtime/machine/machine.hpp"
-#include "runtime/scheduler/interfaces/runtime_options.hpp"
+#include "runtime/pe/interfaces/runtime_options.hpp"
 #include "runtime/task.hpp"
+#include "runtime/wire/machine/machine.hpp"
 
 #include <functional>
 #include <memory>

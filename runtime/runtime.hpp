@@ -1,5 +1,6 @@
-// Includes what most chare programs need. With headers of their own: balance.hpp, checkpoint.hpp,
-// index_map.hpp (mapped), interface.hpp, process_group.hpp, scan.hpp, trace.hpp, when.hpp.
+// The core: what most chare programs need. Beside it, with headers of their own: runtime/balance.hpp,
+// runtime/checkpoint.hpp, runtime/command_line.hpp, and what stands in runtime/more/: sections, scans,
+// interfaces, single chares, objects of processes, maps of indices, when_all, tests, traces.
 #pragma once
 
 #include "runtime/array.hpp"
@@ -17,12 +18,7 @@
 #include "runtime/here.hpp"
 #include "runtime/mailbox.hpp"
 #include "runtime/reduction.hpp"
-#include "runtime/room.hpp"
 #include "runtime/run.hpp"
-#include "runtime/scoped.hpp"
-#include "runtime/section.hpp"
 #include "runtime/sends.hpp"
-#include "runtime/shared_array.hpp"
-#include "runtime/singleton.hpp"
 #include "runtime/task.hpp"
 #include "runtime/timer.hpp"

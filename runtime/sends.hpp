@@ -21,12 +21,12 @@
 // co_await has no priority, and neither has a reply.
 #pragma once
 
+#include "runtime/arrays/elements/element_message.hpp"
 #include "runtime/ask.hpp"
-#include "runtime/collections/elements/element_message.hpp"
 #include "runtime/core/handle.hpp"
 #include "runtime/future.hpp"
-#include "runtime/messages/entry_attributes.hpp"
 #include "runtime/timer.hpp"
+#include "runtime/wire/messages/entry_attributes.hpp"
 
 #include <compare>
 #include <tuple>

@@ -1,9 +1,9 @@
 #include "runtime/task.hpp"
 
-#include "runtime/collections/collection.hpp"
+#include "runtime/arrays/collection.hpp"
 #include "runtime/core/check.hpp"
-#include "runtime/report/pe_watch.hpp"
-#include "runtime/scheduler/pe_action.hpp"
+#include "runtime/pe/pe_action.hpp"
+#include "runtime/watch/report/pe_watch.hpp"
 
 #include <cstdint>
 #include <cstdlib>

@@ -5,7 +5,7 @@
 // function passed to run()) may be coroutines.
 #pragma once
 
-#include "runtime/scheduler/block.hpp"
+#include "runtime/pe/block.hpp"
 
 #include <concepts>
 #include <coroutine>

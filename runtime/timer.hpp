@@ -14,7 +14,7 @@
 
 #include "runtime/callback.hpp"
 #include "runtime/core/duration.hpp"
-#include "runtime/scheduler/pe.hpp"
+#include "runtime/pe/pe.hpp"
 
 #include <concepts>
 #include <cstdint>

@@ -5,25 +5,25 @@ check=$1 root=$2
 
 tree=$(mktemp -d)
 trap 'rm -rf "$tree"' EXIT
-mkdir -p "$tree"/{cmake,runtime/core,runtime/scheduler,collide/serial,m2m,apps/hello,apps/bench,tests/runtime/core}
+mkdir -p "$tree"/{cmake,runtime/core,runtime/pe,collide/serial,m2m,apps/hello,apps/bench,tests/runtime/core}
 cd "$tree"
 
 # The small tree; each fault is planted in it afresh.
 sound() {
   cat >cmake/layers.txt <<'END'
 runtime/core :
-runtime/scheduler : runtime/core
+runtime/pe : runtime/core
 runtime :
 collide/serial : runtime/core
-m2m/vocabulary m2m/mesh.cpp :
+m2m/vocabulary m2m/mesh/mesh.cpp :
 apps/hello : runtime
 END
   echo '// A number.' >runtime/core/number.hpp
-  echo '#include "runtime/core/number.hpp"' >runtime/scheduler/queue.hpp
+  echo '#include "runtime/core/number.hpp"' >runtime/pe/queue.hpp
   echo '#include "runtime/chare.hpp"' >apps/hello/main.cpp
   echo '#include "runtime/core/number.hpp"  // Elements, nowhere a person: whose, "whole".' >collide/serial/grid.cpp
   echo 'Pe& here = current_pe();' >apps/bench/inside.cpp
-  echo 'int nobody = 0;' >m2m/mesh.cpp  # a name is not prose
+  echo 'int nobody = 0;' >m2m/mesh/mesh.cpp  # a name is not prose
   echo 'Says "who" in a quotation.' >m2m/README.md
   echo 'TEST_CASE("a number") {}' >tests/runtime/core/number_test.cpp
   echo 'int shared();' >tests/runtime/core/shared.cpp
@@ -60,16 +60,16 @@ sound
 run_check || { echo "refuses the sound tree"; exit 1; }
 case $check in
   layers)
-    refuses runtime/core/number.hpp '#include "runtime/scheduler/pe.hpp"' 'runtime/core may not include runtime/scheduler'
-    refuses runtime/scheduler/queue.hpp '#include "runtime/collections/arrays/array_of.hpp"' 'runtime/scheduler may not include runtime/collections'
-    refuses runtime/scheduler/queue.hpp '#include "runtime/chare.hpp"' 'runtime/scheduler may not include runtime'
-    refuses collide/serial/grid.cpp '#include "m2m/mesh.cpp"' 'collide/serial may not include m2m/vocabulary'
-    refuses apps/hello/main.cpp '#include "runtime/scheduler/pe.hpp"' 'apps/hello may not include runtime/scheduler'
+    refuses runtime/core/number.hpp '#include "runtime/pe/pe.hpp"' 'runtime/core may not include runtime/pe'
+    refuses runtime/pe/queue.hpp '#include "runtime/arrays/typed/array_of.hpp"' 'runtime/pe may not include runtime/arrays'
+    refuses runtime/pe/queue.hpp '#include "runtime/chare.hpp"' 'runtime/pe may not include runtime'
+    refuses collide/serial/grid.cpp '#include "m2m/mesh/mesh.cpp"' 'collide/serial may not include m2m/vocabulary'
+    refuses apps/hello/main.cpp '#include "runtime/pe/pe.hpp"' 'apps/hello may not include runtime/pe'
     refuses apps/hello/main.cpp '#include "tests/support/catch.hpp"' 'only tests include tests'
     mkdir runtime/new
     refuses runtime/new/room.hpp '#include "runtime/core/number.hpp"' 'has no line for runtime/new'
     # A table with a circle (each line names earlier lines only), with an arrow that nothing uses, and with a file that is gone.
-    refuses cmake/layers.txt 'runtime/core : runtime/scheduler' 'runtime/core may not stand on runtime/scheduler'
+    refuses cmake/layers.txt 'runtime/core : runtime/pe' 'runtime/core may not stand on runtime/pe'
     refuses collide/serial/grid.cpp '// Nothing.' 'nothing in collide/serial includes runtime/core'
     refuses cmake/layers.txt 'm2m/vocabulary m2m/gone.hpp :' 'there is no file m2m/gone.hpp'
     ;;
@@ -81,15 +81,15 @@ case $check in
     ;;
   internals)
     refuses apps/hello/main.cpp 'const auto here = tess::current_pe().id();' 'apps/hello/main.cpp:1:'
-    refuses m2m/mesh.cpp 'if (current_pe_or_null() != nullptr) send();' 'm2m/mesh.cpp:1:'
+    refuses m2m/mesh/mesh.cpp 'if (current_pe_or_null() != nullptr) send();' 'm2m/mesh/mesh.cpp:1:'
     refuses collide/serial/grid.hpp 'void end(Pe& pe);' 'collide/serial/grid.hpp:1:'
     refuses apps/hello/main.cpp 'tess::detail::Meter* meter = nullptr;' 'runtime/here.hpp'
     ;;
   test_names)
     refuses tests/runtime/core/registry.cpp 'TEST_CASE("a name") {}' 'should end in _test.cpp'
     refuses tests/runtime/core/shared_test.cpp 'int shared();' 'holds no test case'
-    refuses runtime/scan.hpp '// A scan.' 'no tests/runtime/scan_test.cpp'
-    refuses tests/headers.txt 'runtime/scan' 'there is no runtime/scan.hpp'
+    refuses runtime/more/scan.hpp '// A scan.' 'no tests/runtime/more/scan_test.cpp'
+    refuses tests/headers.txt 'runtime/scan' 'there is no runtime/more/scan.hpp'
     mkdir tests/elsewhere
     refuses tests/elsewhere/number_test.cpp 'TEST_CASE("a number") {}' 'there is no folder elsewhere'
     ;;

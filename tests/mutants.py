@@ -8,7 +8,7 @@ tests/mutants/*.mutants hold the bugs: a name, the file, the program that should
 replaced (they must occur once):
 
   == a PE answers a report twice
-  file: runtime/completion/completion.cpp
+  file: runtime/pe/completion/completion.cpp
   test: test_runtime_parts [completion]
   - old line
   + new line

@@ -7,8 +7,8 @@
 #include "runtime/base/pool.hpp"
 #include "runtime/command_line.hpp"
 #include "runtime/core/check.hpp"
-#include "runtime/machine/mpi.hpp"
-#include "runtime/machine/threads.hpp"
+#include "runtime/wire/machine/mpi.hpp"
+#include "runtime/wire/machine/threads.hpp"
 
 #include <mpi.h>
 

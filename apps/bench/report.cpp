@@ -4,8 +4,8 @@
 #include "apps/kit/rows.hpp"
 #include "apps/kit/version.hpp"
 #include "runtime/here.hpp"
+#include "runtime/pe/pe.hpp"
 #include "runtime/run.hpp"
-#include "runtime/scheduler/pe.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 // printed only after its result was checked.
 #pragma once
 
-#include "runtime/machine/machine.hpp"
+#include "runtime/wire/machine/machine.hpp"
 
 #include <optional>
 #include <string>

@@ -4,7 +4,7 @@
 #include "apps/kit/version.hpp"
 #include "apps/kit/write_file.hpp"
 #include "runtime/core/error.hpp"
-#include "runtime/machine/machine.hpp"
+#include "runtime/wire/machine/machine.hpp"
 
 #include <cstdio>
 #include <string_view>

@@ -1,7 +1,7 @@
 // The machines of a study of PEs: simulated ones that differ in their PEs only.
 #pragma once
 
-#include "runtime/machine/simulated.hpp"
+#include "runtime/wire/machine/simulated.hpp"
 
 #include <cstdint>
 #include <string>

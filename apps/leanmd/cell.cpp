@@ -1,5 +1,8 @@
 #include "apps/leanmd/cell.hpp"
 
+#include "runtime/more/section.hpp"
+#include "runtime/more/shared_array.hpp"
+
 #include <utility>
 
 namespace leanmd {

@@ -9,6 +9,7 @@
 
 #include "apps/leanmd/atoms.hpp"
 #include "apps/leanmd/compute.hpp"
+#include "runtime/more/section.hpp"
 
 namespace leanmd {
 

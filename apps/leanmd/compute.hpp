@@ -6,9 +6,9 @@
 #pragma once
 
 #include "apps/leanmd/forces.hpp"
+#include "runtime/more/section.hpp"
+#include "runtime/more/shared_array.hpp"
 #include "runtime/runtime.hpp"
-#include "runtime/section.hpp"
-#include "runtime/shared_array.hpp"
 
 #include <array>
 #include <vector>

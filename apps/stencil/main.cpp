@@ -9,7 +9,7 @@
 #include "apps/kit/median.hpp"
 #include "apps/kit/rows.hpp"
 #include "apps/stencil/grid.hpp"
-#include "runtime/monitor.hpp"
+#include "runtime/more/monitor.hpp"
 #include "runtime/runtime.hpp"
 
 #include <algorithm>

@@ -1,9 +1,9 @@
 // Step 9: a test. The simulated machine delivers messages in another order with each seed, so a
 // program that relies on an order is found out. Two registers are written twice by one sender; the
 // first keeps what arrived last, the second keeps the greatest version.
+#include "runtime/more/testing.hpp"
+#include "runtime/more/when.hpp"
 #include "runtime/runtime.hpp"
-#include "runtime/testing.hpp"
-#include "runtime/when.hpp"
 
 struct Versioned {
   int version = 0, value = 0;

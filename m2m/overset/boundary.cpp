@@ -1,6 +1,6 @@
 #include "m2m/overset/boundary.hpp"
 
-#include "m2m/interpolate/orientation.hpp"
+#include "m2m/rows/interpolate/orientation.hpp"
 #include "runtime/core/error.hpp"
 
 #include <algorithm>

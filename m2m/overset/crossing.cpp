@@ -1,7 +1,7 @@
 #include "m2m/overset/crossing.hpp"
 
 #include "collide/triangle.hpp"
-#include "m2m/interpolate/orientation.hpp"
+#include "m2m/rows/interpolate/orientation.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -10,7 +10,7 @@
 // It is used on PE 0. Questions and answers are counted in epoch 0.
 #pragma once
 
-#include "runtime/scheduler/pe_action.hpp"
+#include "runtime/pe/pe_action.hpp"
 #include "runtime/task.hpp"
 
 #include <cstddef>

@@ -2,11 +2,11 @@
 // file "main": what all PEs have to know before elements are restored.
 #pragma once
 
+#include "runtime/arrays/membership.hpp"
 #include "runtime/checkpoint/files.hpp"
-#include "runtime/collections/membership.hpp"
 #include "runtime/core/ids.hpp"
 #include "runtime/core/index.hpp"
-#include "runtime/scheduler/tables/ended_collections.hpp"
+#include "runtime/pe/tables/ended_collections.hpp"
 
 #include <cstdint>
 #include <string>

@@ -1,7 +1,7 @@
 #include "runtime/checkpoint/quiet.hpp"
 
 #include "runtime/core/text.hpp"
-#include "runtime/scheduler/pe_action.hpp"
+#include "runtime/pe/pe_action.hpp"
 
 #include <utility>
 

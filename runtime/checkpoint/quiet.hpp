@@ -7,7 +7,7 @@
 // once is reported: a checkpoint cannot save it.
 #pragma once
 
-#include "runtime/scheduler/pe.hpp"
+#include "runtime/pe/pe.hpp"
 #include "runtime/task.hpp"
 
 #include <cstdint>

@@ -1,14 +1,14 @@
 #include "runtime/checkpoint/restore.hpp"
 
+#include "runtime/arrays/collection.hpp"
+#include "runtime/arrays/elements/index_map.hpp"
 #include "runtime/checkpoint/ask_all.hpp"
 #include "runtime/checkpoint/hosts.hpp"
 #include "runtime/checkpoint/manifest.hpp"
 #include "runtime/checkpoint/quiet.hpp"
 #include "runtime/checkpoint/save.hpp"
-#include "runtime/collections/collection.hpp"
-#include "runtime/collections/elements/index_map.hpp"
 #include "runtime/core/error.hpp"
-#include "runtime/scheduler/runtime.hpp"
+#include "runtime/pe/runtime.hpp"
 
 #include <algorithm>
 #include <optional>

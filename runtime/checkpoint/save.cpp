@@ -1,15 +1,15 @@
 #include "runtime/checkpoint/save.hpp"
 
+#include "runtime/arrays/collection.hpp"
+#include "runtime/arrays/home_of_one.hpp"
 #include "runtime/checkpoint/ask_all.hpp"
 #include "runtime/checkpoint/hosts.hpp"
 #include "runtime/checkpoint/manifest.hpp"
 #include "runtime/checkpoint/quiet.hpp"
-#include "runtime/collections/collection.hpp"
-#include "runtime/collections/home_of_one.hpp"
 #include "runtime/core/error.hpp"
 #include "runtime/core/text.hpp"
-#include "runtime/report/waiting.hpp"
-#include "runtime/scheduler/runtime.hpp"
+#include "runtime/pe/runtime.hpp"
+#include "runtime/watch/report/waiting.hpp"
 
 #include <algorithm>
 #include <bit>

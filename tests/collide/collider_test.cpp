@@ -4,8 +4,8 @@
 // move between them.
 #include "collide/collider.hpp"
 
+#include "runtime/more/testing.hpp"
 #include "runtime/runtime.hpp"
-#include "runtime/testing.hpp"
 #include "tests/support/capsule_of_box.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/n_seeds.hpp"

@@ -1,7 +1,8 @@
 // Colliders that end leave no memory behind, as the system sees it, and pairs without number need
 // little.
 #include "collide/collider.hpp"
-#include "runtime/machine/threads.hpp"
+#include "runtime/more/scoped.hpp"
+#include "runtime/wire/machine/threads.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/resident.hpp"
 

@@ -1,8 +1,8 @@
 // The owners of objects: elements of arrays of two and three dimensions, and members of groups.
 #include "collide/collider.hpp"
 #include "collide/pairs.hpp"
+#include "runtime/more/testing.hpp"
 #include "runtime/runtime.hpp"
-#include "runtime/testing.hpp"
 #include "tests/support/catch.hpp"
 
 #include <algorithm>

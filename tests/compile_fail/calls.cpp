@@ -1,8 +1,9 @@
 // Calls of entry methods that do not compile: their arguments, results, targets and sections.
-#include "runtime/interface.hpp"
-#include "runtime/process_group.hpp"
+#include "runtime/more/interface.hpp"
+#include "runtime/more/process_group.hpp"
+#include "runtime/more/scan.hpp"
+#include "runtime/more/section.hpp"
 #include "runtime/runtime.hpp"
-#include "runtime/scan.hpp"
 
 #include <memory>
 #include <string>

@@ -1,6 +1,6 @@
 // Classes of chares, arrays and indices that do not compile.
-#include "runtime/index_map.hpp"
-#include "runtime/interface.hpp"
+#include "runtime/more/index_map.hpp"
+#include "runtime/more/interface.hpp"
 #include "runtime/runtime.hpp"
 
 #include <string>

@@ -1,6 +1,7 @@
 // Values that a message, a reply, a future or a mailbox cannot hold, and what print() cannot write.
+#include "runtime/more/scoped.hpp"
+#include "runtime/more/when.hpp"
 #include "runtime/runtime.hpp"
-#include "runtime/when.hpp"
 
 #include <memory>
 #include <string>

@@ -2,10 +2,10 @@
 #include "m2m/cell_transfer.hpp"
 
 #include "apps/kit/worst.hpp"
-#include "m2m/workers/cell_worker.hpp"
+#include "m2m/mesh/workers/cell_worker.hpp"
 #include "runtime/core/error.hpp"
 #include "runtime/here.hpp"
-#include "runtime/testing.hpp"
+#include "runtime/more/testing.hpp"
 #include "tests/m2m/element_meshes.hpp"
 #include "tests/support/catch.hpp"
 

@@ -3,7 +3,7 @@
 
 #include "m2m/kuhn.hpp"
 #include "m2m/mesh_parts.hpp"
-#include "runtime/testing.hpp"
+#include "runtime/more/testing.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/n_seeds.hpp"
 #include "tests/support/run.hpp"

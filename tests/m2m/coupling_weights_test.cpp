@@ -2,10 +2,10 @@
 #include "m2m/coupling_weights.hpp"
 
 #include "apps/kit/worst.hpp"
-#include "m2m/parallel/row_book.hpp"
+#include "m2m/couple/row_book.hpp"
 #include "m2m/read_mesh.hpp"
-#include "runtime/machine/simulated.hpp"
-#include "runtime/machine/threads.hpp"
+#include "runtime/wire/machine/simulated.hpp"
+#include "runtime/wire/machine/threads.hpp"
 #include "tests/m2m/field_values.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/scratch.hpp"

@@ -4,8 +4,8 @@
 #include "m2m/kuhn.hpp"
 #include "m2m/transfer.hpp"
 #include "runtime/core/hash.hpp"
-#include "runtime/machine/threads.hpp"
-#include "runtime/testing.hpp"
+#include "runtime/more/testing.hpp"
+#include "runtime/wire/machine/threads.hpp"
 #include "tests/m2m/error_norms.hpp"
 #include "tests/support/catch.hpp"
 

@@ -1,7 +1,7 @@
 #include "m2m/field.hpp"
 
-#include "m2m/fields/expression.hpp"
 #include "m2m/kuhn.hpp"
+#include "m2m/mesh/fields/expression.hpp"
 #include "tests/m2m/error_norms.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/scratch.hpp"

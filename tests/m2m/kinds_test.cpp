@@ -2,7 +2,7 @@
 #include "apps/kit/worst.hpp"
 #include "m2m/read_mesh.hpp"
 #include "m2m/transfer.hpp"
-#include "runtime/testing.hpp"
+#include "runtime/more/testing.hpp"
 #include "tests/m2m/element_meshes.hpp"
 #include "tests/m2m/error_norms.hpp"
 #include "tests/support/catch.hpp"

@@ -4,7 +4,7 @@
 #include "collide/collider.hpp"
 #include "m2m/coupling.hpp"
 #include "m2m/kuhn.hpp"
-#include "runtime/testing.hpp"
+#include "runtime/more/testing.hpp"
 #include "tests/support/catch.hpp"
 
 #include <array>

@@ -1,9 +1,9 @@
 // A serial broad phase for tests of numerics without the runtime.
 #pragma once
 
-#include "m2m/conservative/overlap_rows.hpp"
 #include "m2m/mesh.hpp"
-#include "m2m/weights/point_rows.hpp"
+#include "m2m/rows/conservative/overlap_rows.hpp"
+#include "m2m/rows/weights/point_rows.hpp"
 
 #include <array>
 #include <span>

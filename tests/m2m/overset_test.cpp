@@ -3,9 +3,9 @@
 
 #include "apps/overset/assembly.hpp"
 #include "apps/overset/body.hpp"
-#include "m2m/interpolate/orientation.hpp"
 #include "m2m/kuhn.hpp"
-#include "runtime/testing.hpp"
+#include "m2m/rows/interpolate/orientation.hpp"
+#include "runtime/more/testing.hpp"
 #include "tests/support/catch.hpp"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 #include "tests/m2m/serial_transfer.hpp"
 
-#include "m2m/interpolate/locate.hpp"
-#include "m2m/search/nearest_vertex.hpp"
+#include "m2m/rows/interpolate/locate.hpp"
+#include "m2m/rows/search/nearest_vertex.hpp"
 #include "runtime/core/check.hpp"
 #include "tests/m2m/cell_grid.hpp"
 

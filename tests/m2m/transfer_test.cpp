@@ -1,6 +1,6 @@
-#include "m2m/interpolate/locate.hpp"
 #include "m2m/kuhn.hpp"
 #include "m2m/read_mesh.hpp"
+#include "m2m/rows/interpolate/locate.hpp"
 #include "tests/m2m/error_norms.hpp"
 #include "tests/m2m/non_conforming.hpp"
 #include "tests/m2m/serial_transfer.hpp"

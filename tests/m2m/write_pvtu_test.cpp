@@ -1,7 +1,7 @@
 #include "m2m/write_pvtu.hpp"
 
 #include "m2m/kuhn.hpp"
-#include "runtime/testing.hpp"
+#include "runtime/more/testing.hpp"
 #include "tests/apps/xml.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/scratch.hpp"

@@ -1,7 +1,7 @@
 // Awaited replies and what is waited for with them: late replies, mailboxes and futures that come
 // second, delayed sends, the report of a deadlock.
+#include "runtime/more/when.hpp"
 #include "runtime/runtime.hpp"
-#include "runtime/when.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/run.hpp"
 

@@ -1,9 +1,9 @@
 // Checkpoints on one number of PEs and restarts on another, under any schedule.
 #include "runtime/checkpoint.hpp"
 
-#include "runtime/machine/threads.hpp"
+#include "runtime/more/when.hpp"
 #include "runtime/timer.hpp"
-#include "runtime/when.hpp"
+#include "runtime/wire/machine/threads.hpp"
 #include "tests/runtime/checkpoint/runs.hpp"
 #include "tests/runtime/checkpoint/world.hpp"
 #include "tests/support/n_seeds.hpp"

@@ -2,8 +2,10 @@
 // bytes; and the calls that go through them.
 #include "runtime/element_proxy.hpp"
 
-#include "runtime/interface.hpp"
-#include "runtime/process_group.hpp"
+#include "runtime/more/interface.hpp"
+#include "runtime/more/process_group.hpp"
+#include "runtime/more/section.hpp"
+#include "runtime/more/singleton.hpp"
 #include "runtime/runtime.hpp"
 #include "tests/support/over_seeds.hpp"
 

@@ -1,10 +1,10 @@
 // Futures: moved, members of elements that migrate, and without a value.
 #include "runtime/future.hpp"
 
-#include "runtime/machine/simulated.hpp"
-#include "runtime/machine/threads.hpp"
+#include "runtime/more/when.hpp"
 #include "runtime/runtime.hpp"
-#include "runtime/when.hpp"
+#include "runtime/wire/machine/simulated.hpp"
+#include "runtime/wire/machine/threads.hpp"
 #include "tests/support/over_seeds.hpp"
 
 #include <cstdint>

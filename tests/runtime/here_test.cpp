@@ -1,6 +1,7 @@
 // What code on a PE can ask about this PE.
-#include "runtime/machine/simulated.hpp"
+#include "runtime/more/room.hpp"
 #include "runtime/runtime.hpp"
+#include "runtime/wire/machine/simulated.hpp"
 #include "tests/support/catch.hpp"
 
 #include <chrono>

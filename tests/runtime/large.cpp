@@ -5,6 +5,7 @@
 //     test_large memory          after warm-up a moved vector of 1 MiB takes no new pages
 //     test_large flood           messages without credit stay with their sender
 //     test_large produce         a producer that waits for room keeps little of its output
+#include "runtime/more/room.hpp"
 #include "runtime/runtime.hpp"
 
 #include <cstdlib>

@@ -1,8 +1,8 @@
 #include "runtime/mailbox.hpp"
 
-#include "runtime/machine/simulated.hpp"
+#include "runtime/more/when.hpp"
 #include "runtime/runtime.hpp"
-#include "runtime/when.hpp"
+#include "runtime/wire/machine/simulated.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/run.hpp"
 

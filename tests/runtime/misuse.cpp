@@ -3,9 +3,10 @@
 //
 //     test_misuse NAME_OF_THE_MISUSE
 #include "runtime/balance.hpp"
-#include "runtime/index_map.hpp"
+#include "runtime/more/index_map.hpp"
+#include "runtime/more/section.hpp"
+#include "runtime/more/when.hpp"
 #include "runtime/runtime.hpp"
-#include "runtime/when.hpp"
 
 #include <functional>
 #include <map>

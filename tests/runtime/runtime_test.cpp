@@ -2,7 +2,7 @@
 #include "runtime/runtime.hpp"
 
 #include "runtime/balance.hpp"
-#include "runtime/shared_array.hpp"
+#include "runtime/more/shared_array.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/run.hpp"
 

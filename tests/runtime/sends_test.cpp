@@ -1,10 +1,12 @@
 // Priorities and attributes of entry methods, as programs use them.
 #include "runtime/sends.hpp"
 
-#include "runtime/machine/threads.hpp"
-#include "runtime/process_group.hpp"
+#include "runtime/more/process_group.hpp"
+#include "runtime/more/section.hpp"
+#include "runtime/more/singleton.hpp"
+#include "runtime/more/testing.hpp"
 #include "runtime/runtime.hpp"
-#include "runtime/testing.hpp"
+#include "runtime/wire/machine/threads.hpp"
 #include "tests/support/over_seeds.hpp"
 
 #include <string>

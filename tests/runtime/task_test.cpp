@@ -1,8 +1,8 @@
 // Tasks that give values: of all types, several at once, errors, and what becomes of the value of a
 // task that nothing awaits. Awaited in expressions, since g++ 12 has destroyed temporaries twice.
+#include "runtime/more/testing.hpp"
+#include "runtime/more/when.hpp"
 #include "runtime/runtime.hpp"
-#include "runtime/testing.hpp"
-#include "runtime/when.hpp"
 #include "tests/support/catch.hpp"
 
 #include <memory>

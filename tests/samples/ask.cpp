@@ -1,7 +1,7 @@
-// The samples of runtime/ask.hpp and runtime/when.hpp, compiled and run. tests/samples/check.py
+// The samples of runtime/ask.hpp and runtime/more/when.hpp, compiled and run. tests/samples/check.py
 // compares the text.
+#include "runtime/more/when.hpp"
 #include "runtime/runtime.hpp"
-#include "runtime/when.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/run.hpp"
 

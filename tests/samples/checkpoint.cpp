@@ -2,8 +2,8 @@
 // tests/samples/check.py compares the text.
 #include "runtime/checkpoint.hpp"
 
-#include "runtime/machine/threads.hpp"
 #include "runtime/runtime.hpp"
+#include "runtime/wire/machine/threads.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/scratch.hpp"
 

@@ -1,9 +1,9 @@
 // The samples of collide/collider.hpp, compiled and run. tests/samples/check.py compares the text.
 #include "collide/collider.hpp"
 
-#include "runtime/machine/threads.hpp"
+#include "runtime/more/testing.hpp"
 #include "runtime/runtime.hpp"
-#include "runtime/testing.hpp"
+#include "runtime/wire/machine/threads.hpp"
 #include "tests/support/catch.hpp"
 
 namespace {

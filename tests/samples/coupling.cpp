@@ -1,8 +1,8 @@
 // The sample of m2m/coupling.hpp, compiled and run. tests/samples/check.py compares the text.
 #include "m2m/coupling.hpp"
 
-#include "runtime/machine/threads.hpp"
-#include "runtime/testing.hpp"
+#include "runtime/more/testing.hpp"
+#include "runtime/wire/machine/threads.hpp"
 #include "tests/support/catch.hpp"
 
 #include <array>

@@ -1,8 +1,8 @@
-// The sample of runtime/index_map.hpp, compiled and run. tests/samples/check.py compares the text.
-#include "runtime/index_map.hpp"
+// The sample of runtime/more/index_map.hpp, compiled and run. tests/samples/check.py compares the text.
+#include "runtime/more/index_map.hpp"
 
-#include "runtime/machine/threads.hpp"
 #include "runtime/runtime.hpp"
+#include "runtime/wire/machine/threads.hpp"
 #include "tests/support/catch.hpp"
 
 namespace {

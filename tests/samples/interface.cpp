@@ -1,8 +1,8 @@
-// The sample of runtime/interface.hpp, compiled and run. tests/samples/check.py compares the text.
-#include "runtime/interface.hpp"
+// The sample of runtime/more/interface.hpp, compiled and run. tests/samples/check.py compares the text.
+#include "runtime/more/interface.hpp"
 
-#include "runtime/machine/threads.hpp"
 #include "runtime/runtime.hpp"
+#include "runtime/wire/machine/threads.hpp"
 #include "tests/support/catch.hpp"
 
 namespace {

@@ -4,7 +4,7 @@
 #include "m2m/coupling.hpp"
 #include "m2m/kuhn.hpp"
 #include "m2m/mesh_parts.hpp"
-#include "runtime/machine/threads.hpp"
+#include "runtime/wire/machine/threads.hpp"
 #include "tests/support/catch.hpp"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // The sample of runtime/sends.hpp, compiled and run. tests/samples/check.py compares the text.
-#include "runtime/machine/threads.hpp"
 #include "runtime/runtime.hpp"
+#include "runtime/wire/machine/threads.hpp"
 #include "tests/support/catch.hpp"
 
 #include <vector>

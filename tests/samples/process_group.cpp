@@ -1,10 +1,10 @@
-// The sample of runtime/process_group.hpp, compiled and run on virtual processes of the simulated
+// The sample of runtime/more/process_group.hpp, compiled and run on virtual processes of the simulated
 // machine and on threads. tests/samples/check.py compares the text.
-#include "runtime/process_group.hpp"
+#include "runtime/more/process_group.hpp"
 
-#include "runtime/machine/simulated.hpp"
-#include "runtime/machine/threads.hpp"
 #include "runtime/runtime.hpp"
+#include "runtime/wire/machine/simulated.hpp"
+#include "runtime/wire/machine/threads.hpp"
 #include "tests/support/catch.hpp"
 
 #include <atomic>

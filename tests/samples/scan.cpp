@@ -1,8 +1,8 @@
-// The sample of runtime/scan.hpp, compiled and run. tests/samples/check.py compares the text.
-#include "runtime/scan.hpp"
+// The sample of runtime/more/scan.hpp, compiled and run. tests/samples/check.py compares the text.
+#include "runtime/more/scan.hpp"
 
-#include "runtime/machine/threads.hpp"
 #include "runtime/runtime.hpp"
+#include "runtime/wire/machine/threads.hpp"
 #include "tests/support/catch.hpp"
 
 namespace {

@@ -1,6 +1,8 @@
-// The sample of runtime/scoped.hpp, compiled and run. tests/samples/check.py compares the text.
-#include "runtime/machine/threads.hpp"
+// The sample of runtime/more/scoped.hpp, compiled and run. tests/samples/check.py compares the text.
+#include "runtime/more/scoped.hpp"
+
 #include "runtime/runtime.hpp"
+#include "runtime/wire/machine/threads.hpp"
 #include "tests/support/catch.hpp"
 
 namespace {
@@ -28,7 +30,7 @@ tess::Task add_up_and_count(int& result, std::size_t& n_left) {
 
 }  // namespace
 
-TEST_CASE("the sample of runtime/scoped.hpp adds up 12 and leaves no array behind",
+TEST_CASE("the sample of runtime/more/scoped.hpp adds up 12 and leaves no array behind",
           "[runtime][sample]") {
   int sum = 0;
   std::size_t n_left = 1;

@@ -1,7 +1,7 @@
 // The sample of tasks that give values (runtime/task.hpp), compiled and run. tests/samples/check.py
 // compares the text.
-#include "runtime/machine/threads.hpp"
 #include "runtime/runtime.hpp"
+#include "runtime/wire/machine/threads.hpp"
 #include "tests/support/catch.hpp"
 
 namespace {

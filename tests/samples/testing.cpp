@@ -1,6 +1,6 @@
-// The sample of runtime/testing.hpp and runtime/README.md, compiled and run. tests/samples/check.py
+// The sample of runtime/more/testing.hpp and runtime/README.md, compiled and run. tests/samples/check.py
 // compares the text.
-#include "runtime/testing.hpp"
+#include "runtime/more/testing.hpp"
 
 #include "runtime/runtime.hpp"
 #include "tests/support/catch.hpp"

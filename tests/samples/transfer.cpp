@@ -2,7 +2,7 @@
 #include "m2m/transfer.hpp"
 
 #include "m2m/read_mesh.hpp"
-#include "runtime/machine/threads.hpp"
+#include "runtime/wire/machine/threads.hpp"
 #include "tests/support/catch.hpp"
 
 using namespace tess;

@@ -1,8 +1,8 @@
 // A simulated machine for tests that any schedule must pass: --sim pes=N,cost=100ns,seed=S.
 #pragma once
 
-#include "runtime/machine/simulated.hpp"
 #include "runtime/runtime.hpp"
+#include "runtime/wire/machine/simulated.hpp"
 
 #include <cstdint>
 

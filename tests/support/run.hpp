@@ -7,9 +7,9 @@
 #pragma once
 
 #include "runtime/core/text.hpp"
-#include "runtime/machine/simulated.hpp"
-#include "runtime/machine/threads.hpp"
 #include "runtime/run.hpp"
+#include "runtime/wire/machine/simulated.hpp"
+#include "runtime/wire/machine/threads.hpp"
 
 #include <memory>
 #include <string>

@@ -3,7 +3,7 @@
 #include "apps/bench/calibrate/fit.hpp"
 #include "apps/kit/write_file.hpp"
 #include "runtime/core/error.hpp"
-#include "runtime/machine/simulated.hpp"
+#include "runtime/wire/machine/simulated.hpp"
 
 #include <algorithm>
 #include <fmt/core.h>

@@ -11,7 +11,7 @@
 #pragma once
 
 #include "apps/bench/calibrate/wire_times.hpp"
-#include "runtime/machine/simulated_options.hpp"
+#include "runtime/wire/machine/simulated_options.hpp"
 
 #include <functional>
 #include <string>

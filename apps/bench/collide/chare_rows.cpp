@@ -5,8 +5,8 @@
 #include "apps/bench/collide/peak_memory.hpp"
 #include "collide/collider.hpp"
 #include "runtime/core/error.hpp"
-#include "runtime/machine/threads.hpp"
 #include "runtime/runtime.hpp"
+#include "runtime/wire/machine/threads.hpp"
 
 #include <algorithm>
 #include <array>

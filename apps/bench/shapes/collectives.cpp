@@ -1,6 +1,7 @@
 // A broadcast of an int that every element answers by contributing it; the sum goes to one element,
 // which starts the next round.
 #include "apps/bench/shapes/shapes.hpp"
+#include "runtime/more/section.hpp"
 #include "runtime/runtime.hpp"
 
 namespace bench {

@@ -8,8 +8,8 @@
 #include "runtime/balance.hpp"
 #include "runtime/core/hilbert.hpp"
 #include "runtime/core/number.hpp"
-#include "runtime/machine/simulated.hpp"
-#include "runtime/machine/threads.hpp"
+#include "runtime/wire/machine/simulated.hpp"
+#include "runtime/wire/machine/threads.hpp"
 
 #include <algorithm>
 #include <bit>

@@ -4,7 +4,7 @@
 #include "apps/m2m_transfer/input/lists.hpp"
 #include "m2m/read_mesh.hpp"
 #include "runtime/core/error.hpp"
-#include "runtime/when.hpp"
+#include "runtime/more/when.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 #include "apps/m2m_transfer/run/meshes.hpp"
 
 #include "m2m/placement.hpp"
-#include "runtime/when.hpp"
+#include "runtime/more/when.hpp"
 
 #include <string>
 #include <utility>

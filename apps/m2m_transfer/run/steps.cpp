@@ -1,6 +1,6 @@
 #include "apps/m2m_transfer/run/steps.hpp"
 
-#include "runtime/when.hpp"
+#include "runtime/more/when.hpp"
 
 #include <algorithm>
 

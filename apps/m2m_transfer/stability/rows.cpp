@@ -4,7 +4,7 @@
 #include "apps/m2m_transfer/stability/made.hpp"
 #include "m2m/transfer.hpp"
 #include "runtime/core/error.hpp"
-#include "runtime/machine/simulated.hpp"
+#include "runtime/wire/machine/simulated.hpp"
 
 #include <algorithm>
 #include <bit>

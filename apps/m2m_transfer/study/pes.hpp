@@ -6,7 +6,7 @@
 #include "apps/kit/rows.hpp"
 #include "apps/m2m_transfer/input/problem.hpp"
 #include "apps/m2m_transfer/output/folder.hpp"
-#include "runtime/machine/simulated.hpp"
+#include "runtime/wire/machine/simulated.hpp"
 
 #include <cstdint>
 #include <string>

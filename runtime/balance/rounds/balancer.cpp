@@ -1,6 +1,6 @@
 #include "runtime/balance/rounds/balancer.hpp"
 
-#include "runtime/scheduler/runtime.hpp"
+#include "runtime/pe/runtime.hpp"
 
 #include <boost/unordered/unordered_flat_map.hpp>
 

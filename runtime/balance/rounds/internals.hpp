@@ -1,14 +1,14 @@
 // What the balancer uses of the runtime's internals, by its short name in this namespace.
 #pragma once
 
-#include "runtime/collections/collection.hpp"
-#include "runtime/collections/collection_action.hpp"
-#include "runtime/collections/elements/balance_record.hpp"
-#include "runtime/collections/elements/element.hpp"
-#include "runtime/collections/reductions/reduction_tree.hpp"
-#include "runtime/collections/reductions/typed_partial.hpp"
+#include "runtime/arrays/collection.hpp"
+#include "runtime/arrays/collection_action.hpp"
+#include "runtime/arrays/elements/balance_record.hpp"
+#include "runtime/arrays/elements/element.hpp"
 #include "runtime/core/registry.hpp"
-#include "runtime/scheduler/meter.hpp"
+#include "runtime/pe/meter.hpp"
+#include "runtime/reduce/reduction_tree.hpp"
+#include "runtime/reduce/typed_partial.hpp"
 
 namespace tess::balance {
 

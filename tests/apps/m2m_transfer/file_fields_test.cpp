@@ -5,7 +5,7 @@
 #include "m2m/kuhn.hpp"
 #include "m2m/read_mesh.hpp"
 #include "m2m/write_exodus.hpp"
-#include "runtime/machine/threads.hpp"
+#include "runtime/wire/machine/threads.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/scratch.hpp"
 

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "apps/m2m_transfer/driver.hpp"
-#include "runtime/machine/simulated.hpp"
-#include "runtime/machine/threads.hpp"
+#include "runtime/wire/machine/simulated.hpp"
+#include "runtime/wire/machine/threads.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/scratch.hpp"
 

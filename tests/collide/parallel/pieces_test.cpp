@@ -6,8 +6,8 @@
 #include "collide/triangle.hpp"
 #include "runtime/core/error.hpp"
 #include "runtime/core/hash.hpp"
+#include "runtime/more/testing.hpp"
 #include "runtime/runtime.hpp"
-#include "runtime/testing.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/n_seeds.hpp"
 

@@ -1,8 +1,8 @@
 // The tests show which owners receive a pair, and what a simulated machine charges for it.
 #include "collide/collider.hpp"
 #include "collide/parallel/object_list.hpp"
-#include "runtime/machine/threads.hpp"
 #include "runtime/runtime.hpp"
+#include "runtime/wire/machine/threads.hpp"
 #include "tests/support/catch.hpp"
 
 #include <algorithm>

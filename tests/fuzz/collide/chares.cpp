@@ -1,6 +1,6 @@
 #include "collide/collider.hpp"
+#include "runtime/more/testing.hpp"
 #include "runtime/runtime.hpp"
-#include "runtime/testing.hpp"
 #include "tests/fuzz/collide/comparison.hpp"
 #include "tests/fuzz/collide/objects.hpp"
 

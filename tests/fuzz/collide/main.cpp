@@ -10,7 +10,7 @@
 #include "apps/kit/seeds.hpp"
 #include "runtime/command_line.hpp"
 #include "runtime/core/error.hpp"
-#include "runtime/testing.hpp"
+#include "runtime/more/testing.hpp"
 #include "tests/fuzz/collide/comparison.hpp"
 #include "tests/fuzz/last_words.hpp"
 

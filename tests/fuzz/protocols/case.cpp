@@ -1,7 +1,7 @@
 #include "tests/fuzz/protocols/case.hpp"
 
-#include "runtime/machine/mpi.hpp"
-#include "runtime/machine/threads.hpp"
+#include "runtime/wire/machine/mpi.hpp"
+#include "runtime/wire/machine/threads.hpp"
 
 #include <array>
 #include <cstdlib>

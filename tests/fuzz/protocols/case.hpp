@@ -8,8 +8,8 @@
 // carry their oracle in messages run there.
 #pragma once
 
+#include "runtime/more/testing.hpp"
 #include "runtime/runtime.hpp"
-#include "runtime/testing.hpp"
 
 #include <atomic>
 #include <cstdint>

@@ -10,7 +10,7 @@
 // it, and the next scenario goes on; the last line is "N passed, N failed", of the scenarios.
 #include "apps/kit/seeds.hpp"
 #include "runtime/command_line.hpp"
-#include "runtime/machine/mpi.hpp"
+#include "runtime/wire/machine/mpi.hpp"
 #include "tests/fuzz/last_words.hpp"
 #include "tests/fuzz/protocols/scenarios.hpp"
 

@@ -1,6 +1,6 @@
 // A test of an outside project, without a test framework: chares under adversarial order.
+#include <runtime/more/testing.hpp>
 #include <runtime/runtime.hpp>
-#include <runtime/testing.hpp>
 
 class Adder : public tess::Chare<Adder> {
  public:

@@ -1,7 +1,7 @@
 // A program that balances only if it is asked to has one course for both.
 #include "runtime/balance.hpp"
+#include "runtime/more/testing.hpp"
 #include "runtime/runtime.hpp"
-#include "runtime/testing.hpp"
 #include "tests/support/catch.hpp"
 
 namespace {

@@ -1,8 +1,8 @@
 // Periodic rounds run beside the elements' work: a round does not wait for the messages that are
 // ready.
 #include "runtime/balance.hpp"
+#include "runtime/more/testing.hpp"
 #include "runtime/runtime.hpp"
-#include "runtime/testing.hpp"
 #include "tests/support/catch.hpp"
 
 #include <array>

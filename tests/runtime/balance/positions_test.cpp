@@ -1,8 +1,8 @@
 // A strategy that needs positions is refused when balancing of a chare without any starts, before
 // its elements have worked.
 #include "runtime/balance.hpp"
+#include "runtime/more/testing.hpp"
 #include "runtime/runtime.hpp"
-#include "runtime/testing.hpp"
 #include "tests/support/catch.hpp"
 
 namespace {

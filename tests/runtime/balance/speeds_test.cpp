@@ -3,8 +3,8 @@
 #include "runtime/balance.hpp"
 #include "runtime/balance/strategy.hpp"
 #include "runtime/checkpoint.hpp"
+#include "runtime/more/testing.hpp"
 #include "runtime/runtime.hpp"
-#include "runtime/testing.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/scratch.hpp"
 

@@ -1,7 +1,7 @@
 // A strategy of the user: what it returns is followed or refused, and the run ends.
 #include "runtime/balance.hpp"
+#include "runtime/more/testing.hpp"
 #include "runtime/runtime.hpp"
-#include "runtime/testing.hpp"
 #include "tests/support/catch.hpp"
 
 #include <algorithm>

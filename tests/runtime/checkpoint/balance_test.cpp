@@ -3,8 +3,8 @@
 #include "runtime/balance.hpp"
 
 #include "runtime/checkpoint.hpp"
-#include "runtime/machine/simulated.hpp"
-#include "runtime/machine/threads.hpp"
+#include "runtime/wire/machine/simulated.hpp"
+#include "runtime/wire/machine/threads.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/scratch.hpp"
 

@@ -2,7 +2,7 @@
 // is damaged or lost.
 #include "runtime/checkpoint.hpp"
 #include "runtime/checkpoint/files.hpp"
-#include "runtime/machine/threads.hpp"
+#include "runtime/wire/machine/threads.hpp"
 #include "tests/runtime/checkpoint/runs.hpp"
 #include "tests/runtime/checkpoint/world.hpp"
 #include "tests/support/scratch.hpp"

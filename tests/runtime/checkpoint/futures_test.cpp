@@ -1,8 +1,8 @@
 // Futures and checkpoints: a callback that was saved finds no future of the run after the restart.
 #include "runtime/checkpoint.hpp"
-#include "runtime/machine/threads.hpp"
+#include "runtime/more/when.hpp"
 #include "runtime/runtime.hpp"
-#include "runtime/when.hpp"
+#include "runtime/wire/machine/threads.hpp"
 #include "tests/runtime/checkpoint/runs.hpp"
 #include "tests/support/scratch.hpp"
 

@@ -1,10 +1,10 @@
 // Runs that cannot be saved, and programs that cannot restore: each is an error with a name.
 #include "runtime/balance.hpp"
 #include "runtime/checkpoint.hpp"
-#include "runtime/process_group.hpp"
+#include "runtime/more/process_group.hpp"
+#include "runtime/more/when.hpp"
 #include "runtime/runtime.hpp"
 #include "runtime/timer.hpp"
-#include "runtime/when.hpp"
 #include "tests/runtime/checkpoint/runs.hpp"
 #include "tests/support/scratch.hpp"
 

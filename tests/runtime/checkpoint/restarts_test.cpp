@@ -1,8 +1,10 @@
 // What a run made is known as made in the run that goes on with its checkpoint, and in the one
 // after that.
 #include "runtime/checkpoint.hpp"
+#include "runtime/more/section.hpp"
+#include "runtime/more/singleton.hpp"
+#include "runtime/more/when.hpp"
 #include "runtime/runtime.hpp"
-#include "runtime/when.hpp"
 #include "tests/runtime/checkpoint/runs.hpp"
 #include "tests/support/scratch.hpp"
 

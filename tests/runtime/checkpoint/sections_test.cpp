@@ -1,8 +1,9 @@
 // Sections over restarts: reductions over them, started by elements and several at once, while
 // members end, their indices are used again, and everything migrates.
 #include "runtime/checkpoint.hpp"
+#include "runtime/more/section.hpp"
+#include "runtime/more/when.hpp"
 #include "runtime/runtime.hpp"
-#include "runtime/when.hpp"
 #include "tests/runtime/checkpoint/runs.hpp"
 #include "tests/support/scratch.hpp"
 

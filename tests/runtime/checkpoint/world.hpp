@@ -6,6 +6,8 @@
 
 #include "runtime/checkpoint.hpp"
 #include "runtime/core/hash.hpp"
+#include "runtime/more/section.hpp"
+#include "runtime/more/singleton.hpp"
 #include "runtime/runtime.hpp"
 
 #include <algorithm>

@@ -1,7 +1,8 @@
 // The parts of the runtime that need no run: serialisation, indices, names, reduction operations.
 #include "runtime/core/round_trip.hpp"
+#include "runtime/more/shared_array.hpp"
+#include "runtime/pe/queues/ready_queue.hpp"
 #include "runtime/runtime.hpp"
-#include "runtime/scheduler/queues/ready_queue.hpp"
 #include "tests/support/catch.hpp"
 
 #include <boost/container/small_vector.hpp>

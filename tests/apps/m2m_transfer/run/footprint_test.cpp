@@ -1,7 +1,7 @@
 #include "apps/m2m_transfer/run/footprint.hpp"
 
-#include "runtime/machine/simulated.hpp"
-#include "runtime/machine/threads.hpp"
+#include "runtime/wire/machine/simulated.hpp"
+#include "runtime/wire/machine/threads.hpp"
 #include "tests/support/catch.hpp"
 
 using namespace tess;

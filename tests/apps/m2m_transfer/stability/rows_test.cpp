@@ -2,7 +2,7 @@
 
 #include "apps/m2m_transfer/stability/made.hpp"
 #include "m2m/kuhn.hpp"
-#include "runtime/machine/threads.hpp"
+#include "runtime/wire/machine/threads.hpp"
 #include "tests/support/catch.hpp"
 
 #include <limits>

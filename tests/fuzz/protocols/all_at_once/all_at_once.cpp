@@ -10,6 +10,8 @@
 // Replies are what the function would return. A result of a section has one contribution of each
 // member that has not ended, and all of them to the same multicast.
 #include "runtime/checkpoint.hpp"
+#include "runtime/more/section.hpp"
+#include "runtime/more/singleton.hpp"
 #include "tests/fuzz/protocols/all_at_once/caller.hpp"
 #include "tests/fuzz/protocols/all_at_once/collections.hpp"
 #include "tests/fuzz/protocols/scenarios.hpp"

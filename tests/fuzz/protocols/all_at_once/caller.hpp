@@ -4,7 +4,9 @@
 // would return, and counts the tokens that reach it.
 #pragma once
 
-#include "runtime/when.hpp"
+#include "runtime/more/section.hpp"
+#include "runtime/more/singleton.hpp"
+#include "runtime/more/when.hpp"
 #include "tests/fuzz/protocols/all_at_once/collections.hpp"
 
 #include <mutex>

@@ -2,10 +2,11 @@
 // sections. Each message that must arrive carries a token; the sums of tokens are compared.
 #pragma once
 
-#include "runtime/index_map.hpp"
-#include "runtime/interface.hpp"
-#include "runtime/process_group.hpp"
-#include "runtime/scan.hpp"
+#include "runtime/more/index_map.hpp"
+#include "runtime/more/interface.hpp"
+#include "runtime/more/process_group.hpp"
+#include "runtime/more/scan.hpp"
+#include "runtime/more/section.hpp"
 #include "tests/fuzz/protocols/case.hpp"
 
 #include <algorithm>

@@ -5,8 +5,9 @@
 //
 // The oracle: each result has the contributions to its own question, one of each element that has to
 // be there, and none of an element that had ended before. It needs no common memory.
-#include "runtime/interface.hpp"
-#include "runtime/when.hpp"
+#include "runtime/more/interface.hpp"
+#include "runtime/more/section.hpp"
+#include "runtime/more/when.hpp"
 #include "tests/fuzz/protocols/scenarios.hpp"
 
 #include <algorithm>

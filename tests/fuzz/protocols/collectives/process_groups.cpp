@@ -1,7 +1,7 @@
 // Process groups and read-only data: every PE changes the object of its process, and those of
 // others by messages. The oracle: nothing is lost, all PEs of a process see one object, and the
 // table that was sent once to each process is the same everywhere.
-#include "runtime/process_group.hpp"
+#include "runtime/more/process_group.hpp"
 #include "tests/fuzz/protocols/scenarios.hpp"
 
 namespace tess::fuzz {

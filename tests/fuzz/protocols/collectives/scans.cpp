@@ -5,9 +5,9 @@
 // names the contributions it is made of. The oracle: put in the order of indices, the results of
 // one scan grow by one contribution each, that of the element itself, and each contribution has one
 // result.
-#include "runtime/index_map.hpp"
-#include "runtime/scan.hpp"
-#include "runtime/when.hpp"
+#include "runtime/more/index_map.hpp"
+#include "runtime/more/scan.hpp"
+#include "runtime/more/when.hpp"
 #include "tests/fuzz/protocols/scenarios.hpp"
 
 #include <algorithm>

@@ -2,6 +2,7 @@
 // migrate, are created late and are destroyed. The oracle: each member receives each multicast of
 // its section once and in one order, as long as it lives; result r of a section has the r-th
 // contribution of each of its members, of all that did not end before.
+#include "runtime/more/section.hpp"
 #include "tests/fuzz/protocols/scenarios.hpp"
 
 #include <algorithm>

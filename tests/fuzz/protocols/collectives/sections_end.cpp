@@ -3,6 +3,7 @@
 // what is delivered until then is right (each member receives each multicast at most once and in
 // one order, a result has all members), the epoch in which a section ends returns, and later
 // sections of the same elements lack nothing.
+#include "runtime/more/section.hpp"
 #include "tests/fuzz/protocols/scenarios.hpp"
 
 #include <map>

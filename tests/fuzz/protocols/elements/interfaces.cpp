@@ -2,7 +2,7 @@
 // they migrate. Each keeps proxies of all, which migrate with it; between rounds elements are
 // inserted and end. The oracle: each answer is that of the class that gives it, and what the
 // elements hold after each round is what they hold in a serial program.
-#include "runtime/interface.hpp"
+#include "runtime/more/interface.hpp"
 #include "tests/fuzz/protocols/scenarios.hpp"
 
 #include <utility>

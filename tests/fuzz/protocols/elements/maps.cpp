@@ -2,7 +2,7 @@
 // created on demand outside of the range, end, and are created again. The oracle: initial elements
 // begin on the PE that the map gives, and the gathered totals of each round are those of a serial
 // program.
-#include "runtime/index_map.hpp"
+#include "runtime/more/index_map.hpp"
 #include "tests/fuzz/protocols/scenarios.hpp"
 
 #include <map>

@@ -6,7 +6,8 @@
 // The oracle: a leaver receives each note once, a reduction has a contribution of every element,
 // and after the epoch of the round the indices of the leavers are free for the next ones. It needs no
 // common memory.
-#include "runtime/when.hpp"
+#include "runtime/more/section.hpp"
+#include "runtime/more/when.hpp"
 #include "tests/fuzz/protocols/scenarios.hpp"
 
 #include <utility>

@@ -2,7 +2,7 @@
 // turn, errors, deadlines, asks that are given up, several at once, and delayed sends, some
 // cancelled. The oracle is what each function would return, and a record of the calls: each one
 // that was sent to a living element runs once, also if its reply is no longer wanted.
-#include "runtime/when.hpp"
+#include "runtime/more/when.hpp"
 #include "tests/fuzz/protocols/scenarios.hpp"
 
 #include <atomic>

@@ -2,6 +2,7 @@
 // messages between processes is drawn from the seed, down to one message. The oracle: every message
 // arrives; a process holds no more of one sender's messages than the budget allows; a producer that
 // waits for room has at most one more message waiting; epochs wait for messages that are held back.
+#include "runtime/more/room.hpp"
 #include "tests/fuzz/protocols/scenarios.hpp"
 
 #include <atomic>

@@ -1,6 +1,7 @@
 // Elements pass on values of every kind of container, between processes and while they migrate; a
 // vector of numbers may travel separately from its message (serialize.hpp). The oracle: a value
 // arrives as it was sent, checked member by member against its seed, and every chain ends.
+#include "runtime/more/shared_array.hpp"
 #include "tests/fuzz/protocols/scenarios.hpp"
 
 #include <atomic>

@@ -3,7 +3,7 @@
 // asks to elements that are inserted later, or that the ask itself creates; and timers that an
 // element cancels where it is then. The oracle: each value is what a serial function gives, each
 // error comes where a function throws, and no cancelled timer runs. It needs no common memory.
-#include "runtime/when.hpp"
+#include "runtime/more/when.hpp"
 #include "tests/fuzz/protocols/scenarios.hpp"
 
 #include <chrono>

@@ -1,0 +1,112 @@
+#include "m2m/couple/overlap_loads.hpp"
+
+#include "runtime/core/check.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <tuple>
+#include <unordered_map>
+
+namespace tess::m2m {
+
+void OverlapLoads::add_source(collide::OwnerId piece, std::vector<std::uint32_t> places) {
+  if (!places.empty()) sources_[piece].places = std::move(places);
+}
+
+Addressed<std::vector<std::uint8_t>> OverlapLoads::shared() {
+  std::unordered_map<std::uint32_t, std::uint32_t> n_sources;
+  for (const auto& [piece, source] : sources_)
+    for (const std::uint32_t place : source.places) ++n_sources[place];
+  Addressed<std::vector<std::uint8_t>> out;
+  for (auto& [piece, source] : sources_) {
+    std::vector<std::uint8_t> flags;
+    for (const std::uint32_t place : std::exchange(source.places, {})) {
+      const bool is_shared = n_sources[place] > 1;
+      flags.push_back(is_shared ? 1 : 0);
+      (is_shared ? source.shared : source.places).push_back(place);
+    }
+    out.emplace_back(piece, std::move(flags));
+  }
+  return out;
+}
+
+void OverlapLoads::join() {
+  struct SharedWeight {
+    std::uint32_t place;
+    GlobalId id;
+    VertexId value;  // among those of all sources
+    double weight;
+  };
+  std::sort(partial_.begin(), partial_.end(),
+            [](const PartialRows& a, const PartialRows& b) { return a.from < b.from; });
+  std::vector<SharedWeight> entries;
+  for (const PartialRows& rows : partial_) {
+    Source& source = sources_.at(rows.from);
+    source.first_value = n_values_;
+    source.n_values = static_cast<std::uint32_t>(rows.ids.size());
+    for (std::size_t row = 0; row < source.shared.size(); ++row)
+      for (std::uint32_t k = rows.first[row]; k < rows.first[row + 1]; ++k)
+        entries.push_back({source.shared[row], rows.ids[rows.columns[k]],
+                           static_cast<VertexId>(n_values_ + rows.columns[k]), rows.weights[k]});
+    source.shared = {};
+    n_values_ += source.n_values;
+  }
+  partial_ = {};
+  // By id, as in the rows of one piece; of several copies of an unknown, the first piece's is used.
+  std::sort(entries.begin(), entries.end(), [](const SharedWeight& a, const SharedWeight& b) {
+    return std::tie(a.place, a.id, a.value) < std::tie(b.place, b.id, b.value);
+  });
+  for (auto entry = entries.begin(); entry != entries.end();) {
+    const std::uint32_t place = entry->place;
+    while (entry != entries.end() && entry->place == place) {
+      const SharedWeight& first = *entry;
+      double weight = 0;
+      for (; entry != entries.end() && entry->place == place && entry->id == first.id; ++entry)
+        weight += entry->weight;
+      shared_rows_.add(first.value, weight);
+    }
+    shared_rows_.end_row();
+    shared_places_.push_back(place);
+  }
+}
+
+OverlapLoads::Sums OverlapLoads::add_up(const std::vector<GivenValues>& messages,
+                                        std::size_t n_places, bool with_ranges) const {
+  constexpr double inf = std::numeric_limits<double>::infinity();
+  Sums out;
+  std::vector<double> values;
+  for (const GivenValues& message : messages) {
+    const Source& source = sources_.at(message.from);
+    const std::size_t n =
+        message.values.size() / ((with_ranges ? 3 : 1) * source.places.size() + source.n_values);
+    TESS_CHECK(out.n_components == 0 || n == out.n_components, "source pieces give ",
+               out.n_components, " and ", n, " components in one round: give equally many");
+    if (out.n_components == 0) {
+      out.n_components = n;
+      out.values.assign(n_places * n, 0);
+      if (with_ranges) out.ranges.assign(n_places * n, {inf, -inf});
+      values.resize(n_values_ * n);
+    }
+    const double* from = message.values.data();
+    for (const std::uint32_t place : source.places)
+      for (std::size_t c = 0; c < n; ++c) out.values[place * n + c] = *from++;
+    if (with_ranges)
+      for (const std::uint32_t place : source.places)
+        for (std::size_t c = 0; c < n; ++c, from += 2)
+          out.ranges[place * n + c] = {from[0], from[1]};
+    std::copy_n(from, source.n_values * n, values.data() + source.first_value * n);
+  }
+  const std::size_t n = out.n_components;
+  std::vector<double> sums(shared_places_.size() * n);
+  m2m::apply(shared_rows_, values, n, sums);
+  std::vector<ValueRange> ranges(with_ranges ? sums.size() : 0);
+  if (with_ranges) value_ranges(shared_rows_, values, n, ranges);
+  for (std::size_t k = 0; k < shared_places_.size(); ++k)
+    for (std::size_t c = 0; c < n; ++c) {
+      out.values[shared_places_[k] * n + c] = sums[k * n + c];
+      if (with_ranges) out.ranges[shared_places_[k] * n + c] = ranges[k * n + c];
+    }
+  return out;
+}
+
+}  // namespace tess::m2m

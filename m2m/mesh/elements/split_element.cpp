@@ -1,0 +1,200 @@
+#include "m2m/mesh/elements/split_element.hpp"
+
+#include "runtime/core/check.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace tess::m2m {
+namespace {
+
+using Face = std::array<std::int8_t, 6>;  // vertices of an element, -1 from the last one on
+
+/// The sides of ExodusII, counter-clockwise seen from outside.
+struct Shape {
+  std::size_t n_vertices;
+  std::vector<Face> sides;
+};
+
+const Shape& shape_of(ElementType type) {
+  static const std::array<Shape, 5> shapes{{
+      {4,
+       {{0, 1, 3, -1, -1, -1},
+        {1, 2, 3, -1, -1, -1},
+        {0, 3, 2, -1, -1, -1},
+        {0, 2, 1, -1, -1, -1}}},
+      {8,
+       {{0, 1, 5, 4, -1, -1},
+        {1, 2, 6, 5, -1, -1},
+        {2, 3, 7, 6, -1, -1},
+        {0, 4, 7, 3, -1, -1},
+        {0, 3, 2, 1, -1, -1},
+        {4, 5, 6, 7, -1, -1}}},
+      {6,
+       {{0, 1, 4, 3, -1, -1},
+        {1, 2, 5, 4, -1, -1},
+        {0, 3, 5, 2, -1, -1},
+        {0, 2, 1, -1, -1, -1},
+        {3, 4, 5, -1, -1, -1}}},
+      {5,
+       {{0, 1, 4, -1, -1, -1},
+        {1, 2, 4, -1, -1, -1},
+        {2, 3, 4, -1, -1, -1},
+        {0, 4, 3, -1, -1, -1},
+        {0, 3, 2, 1, -1, -1}}},
+      {10, {{0, 1, 3, 4, 8, 7}, {1, 2, 3, 5, 9, 8}, {0, 3, 2, 7, 9, 6}, {0, 2, 1, 6, 5, 4}}},
+  }};
+  return shapes[static_cast<std::size_t>(type)];
+}
+
+void append(const Tet& tet, std::vector<Tet>& tets) {
+  for (std::size_t a = 0; a < 4; ++a)
+    for (std::size_t b = a + 1; b < 4; ++b)
+      if (tet[a] == tet[b]) return;
+  tets.push_back(tet);
+}
+
+/// Corners first; of the octahedron, those around its diagonal from the edge 0 2 to the edge 1 3.
+void split_tet10(std::span<const VertexId> v, std::vector<Tet>& tets) {
+  constexpr std::size_t parts[8][4] = {{0, 4, 6, 7}, {4, 1, 5, 8}, {6, 5, 2, 9}, {7, 8, 9, 3},
+                                       {4, 6, 7, 8}, {4, 5, 6, 8}, {6, 7, 8, 9}, {5, 9, 6, 8}};
+  for (const auto& part : parts) append({v[part[0]], v[part[1]], v[part[2]], v[part[3]]}, tets);
+}
+
+}  // namespace
+
+std::size_t n_vertices(ElementType type) noexcept {
+  return shape_of(type).n_vertices;
+}
+std::size_t n_sides(ElementType type) noexcept {
+  return shape_of(type).sides.size();
+}
+
+void split_element(ElementType type, std::span<const VertexId> vertices, std::vector<Tet>& tets) {
+  const Shape& shape = shape_of(type);
+  TESS_CHECK(vertices.size() == shape.n_vertices, "expected ", shape.n_vertices, " vertices, got ",
+             vertices.size());
+  if (type == ElementType::tet10) return split_tet10(vertices, tets);
+  if (type == ElementType::tet4)
+    return tets.push_back({vertices[0], vertices[1], vertices[2], vertices[3]});
+  const VertexId apex = *std::min_element(vertices.begin(), vertices.end());
+  for (const Face& side : shape.sides) {
+    std::array<VertexId, 4> face{};
+    std::size_t n = 0;
+    for (; n < 4 && side[n] >= 0; ++n) face[n] = vertices[static_cast<std::size_t>(side[n])];
+    const auto end = face.begin() + static_cast<std::ptrdiff_t>(n);
+    if (std::find(face.begin(), end, apex) != end) continue;
+    std::rotate(face.begin(), std::min_element(face.begin(), end), end);
+    // The face is counter-clockwise from outside, and the apex inside.
+    append({face[0], face[2], face[1], apex}, tets);
+    if (n == 4) append({face[0], face[3], face[2], apex}, tets);
+  }
+}
+
+void ElementSplitter::add(ElementType type, std::span<const VertexId> vertices) {
+  const auto first_tet = static_cast<GlobalId>(mesh_.n_tets());
+  if (runs_.empty() || runs_.back().type != type)
+    runs_.push_back({type, n_elements_, first_tet, {}, {}});
+  ++n_elements_;
+  split_element(type, vertices, mesh_.tets);
+  if (type == ElementType::tet4) return;
+  Run& run = runs_.back();
+  run.vertices.insert(run.vertices.end(), vertices.begin(), vertices.end());
+  run.first_tets.push_back(first_tet);
+}
+
+const ElementSplitter::Run* ElementSplitter::run_of(GlobalId element) const {
+  if (element < 0 || element >= n_elements_) return nullptr;
+  return &*std::prev(std::partition_point(
+      runs_.begin(), runs_.end(), [&](const Run& r) { return r.first_element <= element; }));
+}
+
+std::size_t ElementSplitter::n_sides_of(GlobalId element) const {
+  const Run* const run = run_of(element);
+  return run == nullptr ? 0 : n_sides(run->type);
+}
+
+void ElementSplitter::append_side(GlobalId element, std::int64_t side,
+                                  std::vector<Side>& sides) const {
+  const Run* const run = run_of(element);
+  TESS_CHECK(run != nullptr, "there is no element ", element, " of ", n_elements_);
+  const auto number = static_cast<std::size_t>(element - run->first_element);
+  if (run->type == ElementType::tet4) {
+    sides.push_back(
+        {run->first_tet + static_cast<GlobalId>(number), static_cast<std::int32_t>(side)});
+    return;
+  }
+  const Shape& shape = shape_of(run->type);
+  std::vector<VertexId> face;
+  for (const std::int8_t v : shape.sides[static_cast<std::size_t>(side - 1)])
+    if (v >= 0)
+      face.push_back(run->vertices[number * shape.n_vertices + static_cast<std::size_t>(v)]);
+  const Run* const next =
+      run_of(run->first_element + static_cast<GlobalId>(run->first_tets.size()));
+  const GlobalId end =
+      number + 1 < run->first_tets.size()
+          ? run->first_tets[number + 1]
+          : (next == nullptr ? static_cast<GlobalId>(mesh_.n_tets()) : next->first_tet);
+  const std::vector<Face>& sides_of_tet = shape_of(ElementType::tet4).sides;
+  for (GlobalId t = run->first_tets[number]; t < end; ++t) {
+    const Tet& tet = mesh_.tets[static_cast<std::size_t>(t)];
+    for (std::size_t s = 0; s < 4; ++s) {
+      const bool on_side = std::all_of(
+          sides_of_tet[s].begin(), sides_of_tet[s].begin() + 3, [&](std::int8_t corner) {
+            return std::find(face.begin(), face.end(), tet[static_cast<std::size_t>(corner)]) !=
+                   face.end();
+          });
+      if (on_side) sides.push_back({t, static_cast<std::int32_t>(s + 1)});
+    }
+  }
+}
+
+std::uint64_t ElementSplitter::n_folded(GlobalId begin, GlobalId end) const {
+  constexpr double rounding = 1e-9;  // relative to the volume of the element
+  std::uint64_t n = 0;
+  for (GlobalId t = begin; t < end;) {
+    double right = 0, left = 0;
+    for (const GlobalId element = mesh_.element_of_tet[static_cast<std::size_t>(t)];
+         t < end && mesh_.element_of_tet[static_cast<std::size_t>(t)] == element; ++t) {
+      const double volume = signed_volume(mesh_, static_cast<std::size_t>(t));
+      (volume > 0 ? right : left) += std::abs(volume);
+    }
+    n += std::min(right, left) > rounding * (right + left) ? 1U : 0U;
+  }
+  return n;
+}
+
+void ElementSplitter::finish() {
+  const bool any = std::any_of(runs_.begin(), runs_.end(),
+                               [](const Run& run) { return run.type != ElementType::tet4; });
+  if (!any) return;
+  mesh_.element_of_tet.resize(mesh_.n_tets());
+  for (std::size_t r = 0; r < runs_.size(); ++r) {
+    const Run& run = runs_[r];
+    const GlobalId end =
+        r + 1 < runs_.size() ? runs_[r + 1].first_tet : static_cast<GlobalId>(mesh_.n_tets());
+    GlobalId element = run.first_element;
+    for (GlobalId t = run.first_tet; t < end; ++t) {
+      if (run.type == ElementType::tet4) {
+        element = run.first_element + (t - run.first_tet);
+      } else {
+        const auto after = std::upper_bound(run.first_tets.begin(), run.first_tets.end(), t);
+        element = run.first_element + (after - run.first_tets.begin()) - 1;
+      }
+      mesh_.element_of_tet[static_cast<std::size_t>(t)] = element;
+    }
+    if (run.type == ElementType::tet4) continue;
+    const auto known = std::find_if(mesh_.split.begin(), mesh_.split.end(), [&](const auto& split) {
+      return split.type == name_of(run.type);
+    });
+    SplitElements& split = known != mesh_.split.end()
+                               ? *known
+                               : mesh_.split.emplace_back(SplitElements{name_of(run.type)});
+    split.n_elements += run.first_tets.size();
+    split.n_tets += static_cast<std::uint64_t>(end - run.first_tet);
+    split.n_folded += n_folded(run.first_tet, end);
+  }
+}
+
+}  // namespace tess::m2m

@@ -1,0 +1,64 @@
+#include "runtime/arrays/ending.hpp"
+
+#include "runtime/arrays/collection_action.hpp"
+#include "runtime/pe/pe_action.hpp"
+#include "runtime/pe/to_all.hpp"
+
+namespace tess::detail {
+namespace {
+
+struct End {
+  CollectionId id{};
+};
+struct Knock {
+  CollectionId id{};
+};
+struct Free {
+  CollectionId id{};
+};
+
+void ending_arrives(Collection& collection, End&& /*m*/, Counted counted) {
+  Pe& pe = collection.pe();
+  std::unique_ptr<HostedCollection> ending = pe.take_out(collection.id());
+  collection.end();
+  if (collection.n_local() != 0) pe.keep_ending(std::move(ending), std::move(counted));
+}
+
+/// On each PE, whether the collection is known there already, or has ended by another call.
+void end_arrives(Pe& pe, End&& m, Counted /*counted*/) {
+  send_to_collection<&ending_arrives>(pe, m.id, pe.id(), m);
+}
+
+void knocking_arrives(Collection& /*collection*/, Knock&& /*m*/, Counted /*counted*/) {}
+void knock_arrives(Pe& pe, Knock&& m, Counted /*counted*/) {
+  send_to_collection<&knocking_arrives>(pe, m.id, pe.id(), m);
+}
+
+void freeing_arrives(Pe& pe, Free&& m) {
+  const Pe::Ending ending = pe.take_ending(m.id);  // frees it at the end of this function
+}
+
+}  // namespace
+
+void end_collection(CollectionId id) {
+  if (id == CollectionId{}) refuse_empty_proxy("destroy() of");
+  Pe& pe = current_pe();
+  send_to_all<&end_arrives>(pe, {id});
+}
+
+void wait_everywhere(CollectionId id) {
+  if (id == CollectionId{}) refuse_empty_proxy("co_await of");
+  send_to_all<&knock_arrives>(current_pe(), {id});
+}
+
+bool in_running_program() {
+  const Pe* const pe = current_pe_or_null();
+  return pe != nullptr && !pe->stopped() && !pe->dropping();
+}
+
+void free_later(Collection& collection) {
+  Pe& pe = collection.pe();
+  send_system<&freeing_arrives>(pe, pe.id(), Free{collection.id()});
+}
+
+}  // namespace tess::detail

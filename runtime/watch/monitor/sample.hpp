@@ -1,0 +1,45 @@
+// What a PE reports to the monitor: counters since the start of the run, and what is there now.
+#pragma once
+
+#include "runtime/core/ids.hpp"
+#include "runtime/pe/pe.hpp"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace tess::detail {
+
+struct CollectionSample {
+  CollectionId id{};
+  std::string name;
+  std::uint64_t n_local = 0;
+
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(id, name, n_local);
+  }
+};
+
+struct PeSample {
+  PeId pe{};
+  std::int64_t at_ns = 0;    ///< the PE's clock: wall time, or virtual time
+  std::int64_t idle_ns = 0;  ///< how long it has been idle
+  PeStatistics counts;
+  std::uint64_t n_ready = 0;        ///< messages in its queue
+  std::uint64_t n_epochs = 0;       ///< epochs that it keeps counters of
+  std::uint64_t process_bytes = 0;  ///< memory of the process; only from the first PE of each
+  std::vector<CollectionSample> collections;
+
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(pe, at_ns, idle_ns, counts.messages, counts.sent_remote, counts.bytes_sent, counts.forwards,
+       counts.migrations, counts.dead_letters, counts.late_replies, n_ready, n_epochs,
+       process_bytes, collections);
+  }
+};
+
+/// The present sample of a PE, on its thread.
+[[nodiscard]] PeSample sample_of(Pe& pe);
+
+}  // namespace tess::detail
