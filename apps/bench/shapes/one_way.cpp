@@ -234,7 +234,7 @@ Shape one_way_shape() {
                     "a vector of bytes, moved into the message", Needs::two_pes});
   }
   return {"one_way", "a ball between elements on the first and the last PE, elapsed time over hits",
-          rows, &run_one_way};
+          rows, nullptr, &run_one_way};
 }
 
 }  // namespace bench
