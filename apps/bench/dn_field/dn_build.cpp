@@ -198,7 +198,7 @@ void compressed_rows(const Bench& bench, int n) {
 }
 
 /// Our nearest and trilinear lookups and OpenVDB's, in turn, of points all over the grid; the
-/// fastest of each is compared with the other: 25 % is allowed. Nothing where OpenVDB was not found.
+/// fastest of each is compared with the other: 25 % is allowed. None where OpenVDB was not found.
 void look_up_beside_openvdb(const Bench& bench, const Grid& grid) {
   const auto theirs = OpenVdbField::build(bench.torus, grid, band);
   if (!theirs) return;

@@ -18,10 +18,10 @@ namespace collide_scene {
 /// The second plane stands upright on the middle row of the first, also shifted by (0.3, 0.3, 0.2).
 [[nodiscard]] Scene crossing_planes(std::uint64_t n);
 
-/// A closed curved surface of many small triangles without a file, in the place of the scanned dragon
-/// of the paper: a bumpy tube around a trefoil knot. It has at most n triangles, as many as whole
-/// rings of a closed tube have, at least 24. About 6 units across, one model, without
-/// self-intersection, each edge in two triangles.
+/// A closed curved surface of many small triangles without a file, in the place of the scanned
+/// dragon of the paper: a bumpy tube around a trefoil knot, about 6 units across, one model, without
+/// self-intersection. It has at most n triangles, as many as whole rings of a closed tube have, but
+/// at least 24; each edge is in two of them.
 [[nodiscard]] Scene dragon(std::uint64_t n);
 
 // Boxes, and triangles in random directions, at random places of the unit cube. Their sizes shrink

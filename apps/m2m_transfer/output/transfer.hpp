@@ -18,9 +18,9 @@ enum class Output { report, mesh };
 /// What a transfer uses, and what it leaves out, in lines.
 [[nodiscard]] std::string explain(const Problem& problem, Output output);
 
-/// A cut through the last pair's target across its shortest side, as SVG: the first field, and beside
-/// it |value - truth|. Each tetrahedron that the plane intersects is a polygon with one colour.
-/// Vertices outside have the values of the policy.
+/// A cut through the last pair's target across its shortest side, as SVG: the first field, and
+/// beside it |value - truth|. Each tetrahedron that the plane intersects is a polygon with one
+/// colour. Vertices outside have the values of the policy.
 [[nodiscard]] std::string picture(const Problem& problem);
 
 }  // namespace m2m_transfer

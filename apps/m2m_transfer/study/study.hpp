@@ -61,8 +61,8 @@ struct Check {
 [[nodiscard]] std::vector<Check> checks(const std::vector<TransferReport>& reports);
 
 [[nodiscard]] const kit::Rows<Check>& check_rows();
-/// A line per check that failed, with figure and bound, and what to do about an order. Empty if none
-/// failed.
+/// A line per check that failed, with figure and bound, and what to do about an order. Empty if
+/// none failed.
 [[nodiscard]] std::string failures(const std::vector<Check>& checks);
 
 }  // namespace m2m_transfer
