@@ -1,7 +1,8 @@
-#include "apps/lb_lab/collision/collision.hpp"
-
+// The kind of workload in which the chares are the voxels of a collision. They are made on demand
+// where clusters of boxes drift, and end when the boxes have passed. A cut of the plane is the grid
+// of voxels, and its number of chares per PE an upper bound: voxels without boxes do not exist.
 #include "apps/lb_lab/collision/owner.hpp"
-#include "apps/lb_lab/run/balanced.hpp"
+#include "apps/lb_lab/run/kind.hpp"
 #include "apps/lb_lab/run/stepped.hpp"
 #include "collide/pairs.hpp"
 

@@ -1,7 +1,6 @@
-#include "apps/lb_lab/particles/particles.hpp"
-
+// The kind of workload in which the chares are regions of space with their particles (region.hpp).
 #include "apps/lb_lab/particles/region.hpp"
-#include "apps/lb_lab/run/balanced.hpp"
+#include "apps/lb_lab/run/kind.hpp"
 #include "apps/lb_lab/run/stepped.hpp"
 
 #include <fmt/format.h>

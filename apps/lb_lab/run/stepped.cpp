@@ -1,7 +1,5 @@
 #include "apps/lb_lab/run/stepped.hpp"
 
-#include "apps/lb_lab/run/balanced.hpp"
-
 namespace lb_lab {
 
 tess::Task run_stepped(const Experiment& experiment, tess::GroupProxy<Station> stations,
