@@ -15,8 +15,7 @@ constexpr std::int32_t owners_a_pe = 4;
 
 class Collision final : public Stepped {
  public:
-  Collision(const Experiment& experiment, tess::GroupProxy<Station> stations, Outcome& outcome)
-      : experiment_(experiment), stations_(stations), outcome_(outcome) {}
+  using Stepped::Stepped;
 
   tess::BalancerProxy create() override {
     const Domain& domain = experiment_.plan.problem.domain;
@@ -42,18 +41,9 @@ class Collision final : public Stepped {
   }
 
  private:
-  const Experiment& experiment_;
-  const tess::GroupProxy<Station> stations_;
-  Outcome& outcome_;
   tess::collide::Collider collider_;
   tess::ArrayProxy<Owner> owners_;
 };
-
-tess::Task run_collision(const Experiment& experiment, tess::GroupProxy<Station> stations,
-                         Outcome& outcome) {
-  Collision workload(experiment, stations, outcome);
-  co_await run_stepped(experiment, stations, workload, outcome);
-}
 
 /// The serial collider, on a grid of its own.
 std::uint64_t serial_answer_of_collision(const Problem& p) {
@@ -82,6 +72,6 @@ std::string describe_collision(const Problem& p) {
 }  // namespace
 
 const Kind collision_kind{Speeds::relative, &serial_answer_of_collision, &nominal_seconds,
-                          &describe_collision, &run_collision};
+                          &describe_collision, &run_stepped<Collision>};
 
 }  // namespace lb_lab

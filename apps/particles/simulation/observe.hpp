@@ -2,7 +2,6 @@
 // particles, and particles that went through a surface. No message is sent here.
 #pragma once
 
-#include "apps/particles/audit/measured.hpp"
 #include "apps/particles/simulation/station.hpp"
 #include "collide/dn_field/particles.hpp"
 
