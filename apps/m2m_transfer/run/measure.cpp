@@ -88,7 +88,7 @@ Task measure(Problem& problem, GroupProxy<Gauge> gauge, kit::Progress& progress)
 
   progress.phase("partition");
   const Time start = now();
-  std::vector<DistributedMesh> meshes = co_await place(problem, problem.kind, problem.chares());
+  std::vector<DistributedMesh> meshes = co_await place(problem);
   const double setup = seconds_since(start);
   std::optional<GraphRun> graph;
   for (std::int32_t round = 0; round < problem.repeat; ++round) {

@@ -30,7 +30,7 @@ DriftRow row_of(const std::string& field, const FieldNorms& norms) {
 Task run_kind(Problem& problem, const std::vector<std::int32_t>& trips, kit::Progress& progress,
               Drift& drift) {
   progress.phase("partition");
-  std::vector<DistributedMesh> meshes = co_await place(problem, problem.kind, problem.chares());
+  std::vector<DistributedMesh> meshes = co_await place(problem);
   GraphRun graph(problem, meshes, progress);
   co_await graph.search();
   const RunMesh& start = problem.meshes.front();
