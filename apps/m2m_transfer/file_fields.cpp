@@ -2,8 +2,6 @@
 
 #include "apps/kit/rows.hpp"
 #include "apps/kit/write_file.hpp"
-#include "apps/m2m_transfer/input/lists.hpp"
-#include "apps/m2m_transfer/input/status_field.hpp"
 #include "apps/m2m_transfer/output/found.hpp"
 #include "apps/m2m_transfer/result_format.hpp"
 #include "m2m/cell_transfer.hpp"

@@ -1,7 +1,5 @@
 #include "apps/m2m_transfer/run/measure.hpp"
 
-#include "apps/m2m_transfer/input/formulas.hpp"
-#include "apps/m2m_transfer/input/status_field.hpp"
 #include "apps/m2m_transfer/run/steps.hpp"
 #include "m2m/write_pvtu.hpp"
 

@@ -1,6 +1,5 @@
 #include "apps/m2m_transfer/study/drift.hpp"
 
-#include "apps/m2m_transfer/input/lists.hpp"
 #include "apps/m2m_transfer/run/steps.hpp"
 #include "runtime/core/error.hpp"
 #include "runtime/core/number.hpp"

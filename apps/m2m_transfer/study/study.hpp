@@ -56,7 +56,7 @@ struct Check {
 };
 
 /// Per pair of meshes: the largest error of linear interpolation over the vertices found, against
-/// its bound (input/formulas.hpp) plus rounding. Per kind: the order of the L2 error between the
+/// its bound (linear_bound()) plus rounding. Per kind: the order of the L2 error between the
 /// two finest meshes. Both for fields with known derivatives only.
 [[nodiscard]] std::vector<Check> checks(const std::vector<TransferReport>& reports);
 

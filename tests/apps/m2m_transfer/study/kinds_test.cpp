@@ -1,5 +1,4 @@
 // Studies of kinds, of steps and of PEs.
-#include "apps/m2m_transfer/input/formulas.hpp"
 #include "apps/m2m_transfer/study/study.hpp"
 #include "m2m/kuhn.hpp"
 #include "tests/apps/m2m_transfer/program.hpp"
