@@ -31,8 +31,8 @@ class CorePing {
   alignas(64) std::array<std::vector<std::byte>, 2> written_;
 };
 
-/// Nanoseconds one way between the first and the last process of the job, by MPI_Isend and MPI_Irecv
-/// only, over so many round trips of so many bytes. All processes call it with the same arguments,
+/// Nanoseconds one way between the first and the last process of the job, by MPI_Isend and
+/// MPI_Irecv only, over so many round trips of so many bytes. All processes call it with the same arguments,
 /// while no run is under way; the result is process 0's. MPI is initialised: the machine of a job
 /// under mpirun has done so.
 double raw_mpi_one_way(std::size_t n_bytes, std::int64_t n_round_trips);

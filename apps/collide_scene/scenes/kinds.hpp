@@ -19,8 +19,8 @@ namespace collide_scene {
 [[nodiscard]] Scene crossing_planes(std::uint64_t n);
 
 /// A closed curved surface of many small triangles without a file, in the place of the scanned
-/// dragon of the paper: a bumpy tube around a trefoil knot, about 6 units across, one model, without
-/// self-intersection. It has at most n triangles, as many as whole rings of a closed tube have, but
+/// dragon of the paper: a bumpy tube around a trefoil knot, about 6 units across, one model,
+/// without self-intersection. It has at most n triangles, as many as whole rings of a closed tube have, but
 /// at least 24; each edge is in two of them.
 [[nodiscard]] Scene dragon(std::uint64_t n);
 
@@ -36,8 +36,8 @@ namespace collide_scene {
 /// The same over six decades.
 [[nodiscard]] Scene six_decades(std::uint64_t n, std::uint64_t seed);
 
-/// Triangles a tenth long and a ten-thousandth wide, at 100 000 as the next two: 3.5 million pairs of
-/// boxes overlap, and 1 800 pairs of triangles meet.
+/// Triangles a tenth long and a ten-thousandth wide, at 100 000 as the next two: 3.5 million pairs
+/// of boxes overlap, and 1 800 pairs of triangles meet.
 [[nodiscard]] Scene needles(std::uint64_t n, std::uint64_t seed);
 /// Two tenths long.
 [[nodiscard]] Scene long_needles(std::uint64_t n, std::uint64_t seed);

@@ -3,8 +3,8 @@
 // begin of an iteration. A particle that enters has done its iteration, and waits among the
 // arrivals.
 //
-// A Block of apps/particles has the same protocol: arrivals wait for their iteration, an empty chare
-// ends, leavers are sent with create-on-demand. These are the 30 lines of enter(), take_in() and
+// A Block of apps/particles has the same protocol: arrivals wait for their iteration, an empty
+// chare ends, leavers are sent with create-on-demand. These are the 30 lines of enter(), take_in() and
 // send_leavers(), and a shared base with its two parameters (particle, context) is not shorter.
 #pragma once
 

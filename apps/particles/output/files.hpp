@@ -28,8 +28,8 @@ void prepare_files(const Scene& scene, const Options& options, kit::FileNames& n
 [[nodiscard]] std::string slice_svg(const tess::dn::Field& field, int axis, double at);
 
 /// Paths of the particles over all snapshots, coloured by time (figures 3 and 6 to 9), and dots
-/// where they are at some of the times; the shadows of the objects where they stand at first, and the
-/// outlines of moving ones at the last snapshot. One frame per axis of scene.outputs.axes, side by
+/// where they are at some of the times; the shadows of the objects where they stand at first, and
+/// the outlines of moving ones at the last snapshot. One frame per axis of scene.outputs.axes, side by
 /// side.
 [[nodiscard]] std::string paths_svg(const Scene& scene, const std::vector<Snapshot>& snapshots);
 
