@@ -57,6 +57,16 @@ void Bench::row(std::string_view name, const Samples& samples, std::string_view 
   if (speaks_ && wants(name)) report_.row(name, samples, unit, limit);
 }
 
+int run(const Shape& shape, Bench& bench) {
+  if (shape.run != nullptr) return shape.run(bench);
+  std::vector<Figure> figures(shape.rows.size());
+  const int code = bench.run([&] { return shape.measure(bench, figures); });
+  for (std::size_t i = 0; code == 0 && i < figures.size(); ++i)
+    bench.row(shape.rows[i].name, figures[i].samples, shape.rows[i].unit,
+              figures[i].limit.empty() ? 0 : figures[i].limit.median());
+  return code;
+}
+
 std::int64_t times_in_sample(double nanoseconds, std::int64_t most) {
   const double n = sample_nanoseconds / std::max(nanoseconds, 1e-3);
   return n >= static_cast<double>(most) ? most

@@ -1,17 +1,20 @@
 // A measurement and what it needs. A shape is one program in miniature (apps/bench/shapes/, a file
 // each); it is run on fresh machines, takes samples in turns, checks what was done, and gives rows.
 //
-//     main           for each chosen shape: shape.run(bench) on every process
-//     shape.run      bench.run(coroutine on PE 0) once or more; then bench.row(…)
+//     main           for each chosen shape: run(shape, bench) on every process
+//     shape.measure  a coroutine on PE 0, which fills a figure per row
+//     shape.run      of some instead: bench.run(coroutine) once or more; then bench.row(…)
 //
 // The first sample of a figure is a warm-up and not counted.
 #pragma once
 
 #include "apps/bench/report.hpp"
 #include "runtime/run.hpp"
+#include "runtime/task.hpp"
 
 #include <chrono>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -40,11 +43,17 @@ enum class Needs : std::uint8_t {
   two_processes,  ///< PE 0 and the last PE are in different processes, joined by MPI
 };
 
-/// What --list says about a row.
+/// What --list says about a row, and the unit of its figure.
 struct RowText {
   std::string name;
   std::string meaning;
   Needs needs = Needs::nothing;
+  std::string_view unit = "ns";
+};
+
+/// The samples of a row, and of its limit where that is measured in the same turns.
+struct Figure {
+  Samples samples, limit;
 };
 
 class Bench {
@@ -95,8 +104,12 @@ struct Shape {
   std::string name;
   std::string meaning;
   std::vector<RowText> rows;
-  int (*run)(Bench&);
+  tess::Task (*measure)(const Bench&, std::span<Figure> of_rows) = nullptr;
+  int (*run)(Bench&) = nullptr;  ///< in place of `measure`, where one run is not enough
 };
+
+/// Measures a shape, and shows its rows. Returns the exit code.
+[[nodiscard]] int run(const Shape& shape, Bench& bench);
 
 /// How often something that takes `nanoseconds` fits into a sample; at least once, at most `most`.
 [[nodiscard]] std::int64_t times_in_sample(double nanoseconds, std::int64_t most);

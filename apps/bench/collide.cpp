@@ -9,11 +9,9 @@
 //
 // The limit of our rows is the fastest other library of this run, if one has a row; of a collider
 // on one PE the serial face, and on two PEs half the time of one.
-#include "apps/bench/collide/box_rows.hpp"
 #include "apps/bench/collide/case.hpp"
-#include "apps/bench/collide/chare_rows.hpp"
-#include "apps/bench/collide/conversion_rows.hpp"
 #include "apps/bench/collide/one_core.hpp"
+#include "apps/bench/collide/rows.hpp"
 #include "apps/kit/driver.hpp"
 #include "apps/kit/write_file.hpp"
 

@@ -121,7 +121,7 @@ int main(int argc, char** argv) {
     if (speaks) bench.report().header();
     for (const bench::Shape& shape : bench::all_shapes()) {
       if (!bench::any_wanted(bench, shape)) continue;
-      if (const int code = shape.run(bench); code != 0) return code;
+      if (const int code = bench::run(shape, bench); code != 0) return code;
     }
     if (speaks && !options.json.empty())
       kit::write_file(

@@ -1,5 +1,4 @@
-#include "apps/lb_lab/collision/collision.hpp"
-#include "apps/lb_lab/particles/particles.hpp"
+#include "apps/lb_lab/workload/workload.hpp"
 #include "runtime/core/error.hpp"
 #include "runtime/core/hash.hpp"
 
@@ -122,30 +121,15 @@ std::uint64_t diffuse(const Problem& p, Cell cell, std::int32_t t, const Stencil
 const std::vector<Workload>& workloads() {
   static const std::vector<Workload> all = [] {
     const std::vector<Workload> silent = {
-        {"uniform", "every cell costs the same", {}, {}, uniform, seeded, stir},
-        {"linear", "a cell's work is proportional to its number", {}, {}, linear, seeded, stir},
-        {"one_hot", "one cell has half a PE's work on top", {}, {}, one_hot, seeded, stir},
-        {"random_walk",
-         "the logarithm of a cell's work is a random walk",
-         {},
-         {},
-         random_walk,
-         seeded,
+        {"uniform", "every cell costs the same", uniform, seeded, stir},
+        {"linear", "a cell's work is proportional to its number", linear, seeded, stir},
+        {"one_hot", "one cell has half a PE's work on top", one_hot, seeded, stir},
+        {"random_walk", "the logarithm of a cell's work is a random walk", random_walk, seeded,
          stir},
-        {"moving_hot_spot",
-         "a quarter costs threefold, and travels round once a run",
-         {},
-         {},
-         moving_hot_spot,
-         seeded,
-         stir},
-        {"heavy_tailed",
-         "Pareto with exponent 1.5, cut at 64 times the least",
-         {},
-         {},
-         heavy_tailed,
-         seeded,
-         stir},
+        {"moving_hot_spot", "a quarter costs threefold, and travels round once a run",
+         moving_hot_spot, seeded, stir},
+        {"heavy_tailed", "Pareto with exponent 1.5, cut at 64 times the least", heavy_tailed,
+         seeded, stir},
     };
     std::vector<Workload> result = silent;
     for (Workload loud : silent) {
@@ -156,7 +140,7 @@ const std::vector<Workload>& workloads() {
     }
     result.push_back({"stencil",
                       "diffusion on a plane; a disc with four sub-steps circles once a run",
-                      Shape::plane, Traffic::neighbours, refined_work, warm, diffuse});
+                      refined_work, warm, diffuse, Shape::plane, Traffic::neighbours});
     result.push_back({.name = "collision",
                       .what = "boxes in clusters that drift: their voxels are balanced",
                       .shape = Shape::plane,

@@ -2,15 +2,13 @@
 
 #include "apps/kit/write_file.hpp"
 #include "apps/m2m_transfer/options.hpp"
-#include "apps/m2m_transfer/output/drift.hpp"
-#include "apps/m2m_transfer/output/explain.hpp"
-#include "apps/m2m_transfer/output/picture.hpp"
-#include "apps/m2m_transfer/output/table.hpp"
+#include "apps/m2m_transfer/output/transfer.hpp"
 #include "apps/m2m_transfer/result_format.hpp"
 #include "apps/m2m_transfer/run/measure.hpp"
-#include "apps/m2m_transfer/study/checks.hpp"
+#include "apps/m2m_transfer/study/drift.hpp"
 #include "apps/m2m_transfer/study/pes.hpp"
 #include "apps/m2m_transfer/study/steps.hpp"
+#include "apps/m2m_transfer/study/study.hpp"
 #include "m2m/read_mesh.hpp"
 #include "runtime/core/error.hpp"
 

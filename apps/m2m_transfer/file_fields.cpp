@@ -2,9 +2,6 @@
 
 #include "apps/kit/rows.hpp"
 #include "apps/kit/write_file.hpp"
-#include "apps/m2m_transfer/input/lists.hpp"
-#include "apps/m2m_transfer/input/status_field.hpp"
-#include "apps/m2m_transfer/output/farthest.hpp"
 #include "apps/m2m_transfer/output/found.hpp"
 #include "apps/m2m_transfer/result_format.hpp"
 #include "m2m/cell_transfer.hpp"
@@ -420,24 +417,24 @@ std::string table(const FileFieldsReport& r) {
 kit::Json json_of(const FileFieldsReport& r) {
   kit::Json whole{{"source", r.source}, {"target", r.target}, {"fields", r.fields}};
   whole["elements"] = json_of(r.source_elements, r.target_elements);
-  if (r.searched)
-    whole.update({{"inside", r.tally.counts[0]},
-                  {"boundary", r.tally.counts[1]},
-                  {"snapped", r.tally.counts[2]},
-                  {"outside", r.tally.counts[3]},
-                  {"farthest", json_of(r.worst)}});
-  else if (!r.has_cells)
+  const auto add_found = [&whole](const std::string& of, const Tally& tally) {
+    constexpr const char* names[] = {"inside", "boundary", "snapped", "outside"};
+    for (std::size_t i = 0; i < 4; ++i) whole[of + names[i]] = tally.counts[i];
+  };
+  const auto add_overlaps = [&whole](const std::string& of, const Tally& tally) {
+    if (tally.n_overcovered > 0)
+      whole.update(
+          {{of + "overcovered", tally.n_overcovered}, {of + "most_covered", tally.most_covered}});
+  };
+  if (r.searched) {
+    add_found("", r.tally);
+    whole["farthest"] = json_of(r.worst);
+  } else if (!r.has_cells) {
     whole["without_weights"] = r.n_without;
-  if (r.has_cells)
-    whole.update({{"cells_inside", r.cell_tally.counts[0]},
-                  {"cells_boundary", r.cell_tally.counts[1]},
-                  {"cells_snapped", r.cell_tally.counts[2]},
-                  {"cells_outside", r.cell_tally.counts[3]}});
-  if (r.tally.n_overcovered > 0)
-    whole.update({{"overcovered", r.tally.n_overcovered}, {"most_covered", r.tally.most_covered}});
-  if (r.cell_tally.n_overcovered > 0)
-    whole.update({{"cells_overcovered", r.cell_tally.n_overcovered},
-                  {"cells_most_covered", r.cell_tally.most_covered}});
+  }
+  if (r.has_cells) add_found("cells_", r.cell_tally);
+  add_overlaps("", r.tally);
+  add_overlaps("cells_", r.cell_tally);
   if (r.n_weights > 0) whole["weights"] = r.n_weights;
   whole["steps"] = kit::Json::array();
   for (const MovedStep& step : r.steps)

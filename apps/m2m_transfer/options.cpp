@@ -1,6 +1,5 @@
 #include "apps/m2m_transfer/options.hpp"
 
-#include "apps/m2m_transfer/input/lists.hpp"
 #include "apps/m2m_transfer/study/study.hpp"
 #include "m2m/transfer_kind.hpp"
 #include "runtime/core/error.hpp"

@@ -1,8 +1,7 @@
-#include "apps/bench/collide/box_rows.hpp"
-
 #include "apps/bench/collide/method.hpp"
 #include "apps/bench/collide/one_core.hpp"
 #include "apps/bench/collide/peak_memory.hpp"
+#include "apps/bench/collide/rows.hpp"
 #include "runtime/core/error.hpp"
 
 #include <algorithm>
@@ -220,7 +219,7 @@ std::map<std::string, std::size_t> peaks_of(const Output& output, const Case& of
   return peaks;
 }
 
-/// True if a row of the case is wanted that is none of chare_rows.hpp.
+/// True if a row of the case is wanted that is none of chare_rows().
 bool wants_box_rows(const Output& output, const std::string& of_case) {
   if (output.wants(of_case, of_case)) return true;
   for (const auto& [row, meaning] : box_row_texts(of_case))
@@ -234,12 +233,12 @@ Case sized(const Output& output, const Case& of) {
 
 }  // namespace
 
-std::vector<std::pair<std::string, std::string>> box_row_texts(const std::string& of_case) {
+RowTexts box_row_texts(const std::string& of_case) {
   const auto all = box_cases();
   const auto of =
       std::find_if(all.begin(), all.end(), [&](const Case& each) { return each.name == of_case; });
   const Problem small = make_problem(smaller(*of, 1024));
-  std::vector<std::pair<std::string, std::string>> rows;
+  RowTexts rows;
   const auto add = [&](std::string_view row, std::string_view meaning) {
     rows.emplace_back(fmt::format("{}_{}", of_case, row), meaning);
   };
@@ -281,7 +280,7 @@ void box_rows(Output& output) {
 
 void growth_rows(Output& output) {
   const auto all = box_cases();
-  for (const char* const name : growth_cases) {
+  for (const char* const name : {"wave_self", "boxes", "disparity"}) {
     const Case of =
         *std::find_if(all.begin(), all.end(), [&](const Case& each) { return each.name == name; });
     std::map<std::string_view, Samples> extremes;

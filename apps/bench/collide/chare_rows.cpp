@@ -1,8 +1,7 @@
-#include "apps/bench/collide/chare_rows.hpp"
-
 #include "apps/bench/collide/method.hpp"
 #include "apps/bench/collide/one_core.hpp"
 #include "apps/bench/collide/peak_memory.hpp"
+#include "apps/bench/collide/rows.hpp"
 #include "collide/collider.hpp"
 #include "runtime/core/error.hpp"
 #include "runtime/runtime.hpp"
@@ -179,8 +178,8 @@ void measure(Output& output, const Case& of, const std::vector<Setting>& chosen)
 
 }  // namespace
 
-std::vector<std::pair<std::string, std::string>> chare_row_texts(const std::string& of_case) {
-  std::vector<std::pair<std::string, std::string>> rows;
+RowTexts chare_row_texts(const std::string& of_case) {
+  RowTexts rows;
   for (const Setting& setting : settings)
     if (of_case == setting.of_case && is_possible(setting)) {
       rows.emplace_back(name_of(setting), fmt::format("ns per object: {}", setting.meaning));

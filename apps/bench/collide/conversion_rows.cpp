@@ -1,7 +1,6 @@
-#include "apps/bench/collide/conversion_rows.hpp"
-
 #include "apps/bench/collide/conversion.hpp"
 #include "apps/bench/collide/one_core.hpp"
+#include "apps/bench/collide/rows.hpp"
 #include "runtime/core/check.hpp"
 #include "runtime/core/hash.hpp"
 
@@ -9,8 +8,8 @@
 
 namespace bench {
 
-std::vector<std::pair<std::string, std::string>> conversion_row_texts() {
-  std::vector<std::pair<std::string, std::string>> rows;
+RowTexts conversion_row_texts() {
+  RowTexts rows;
   for (const Conversion& conversion : conversions()) {
     const std::string name = fmt::format("conversion_{}", conversion.name);
     rows.emplace_back(name, fmt::format("ns per coordinate: {}", conversion.meaning));

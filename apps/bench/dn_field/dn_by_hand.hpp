@@ -3,10 +3,14 @@
 // the rule. All take n_steps steps.
 #pragma once
 
-#include "apps/bench/dn_field/dn_scene.hpp"
+#include "collide/dn_field/field.hpp"
+#include "collide/dn_field/particles.hpp"
 #include "collide/dn_field/rules.hpp"
 
 namespace bench {
+
+inline constexpr double step = 1e-3;
+inline constexpr int n_steps = 32;
 
 /// Only gravity: the parabola.
 void gravity_by_hand(const tess::dn::ParticleSpan& all, tess::dn::Vec3 g);

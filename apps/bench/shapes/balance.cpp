@@ -108,7 +108,7 @@ double grinding_floor(const GrindPlan& plan, double rate) {
          (plan.sync_every * blocks + (plan.n_iterations - plan.sync_every) * ideal);
 }
 
-tess::Task measure_balance(const Bench& bench, Samples& total, Samples& floor) {
+tess::Task measure_balance(const Bench& bench, std::span<Figure> of_rows) {
   GrindPlan plan;
   plan.unit = bench.size<std::int64_t>(8000, 100);
   plan.n_iterations = bench.size(60, 6);
@@ -127,16 +127,9 @@ tess::Task measure_balance(const Bench& bench, Samples& total, Samples& floor) {
     const std::int64_t n_steps = co_await grinders.reduce<&Grinder::count>();
     TESS_CHECK(n_steps == n_grinders * plan.n_iterations, n_steps, " steps were done");
     if (turn == 0) continue;
-    total.add(seconds);
-    floor.add(grinding_floor(plan, rate));
+    of_rows[0].samples.add(seconds);
+    of_rows[0].limit.add(grinding_floor(plan, rate));
   }
-}
-
-int run_balance(Bench& bench) {
-  Samples total, floor;
-  const int code = bench.run([&] { return measure_balance(bench, total, floor); });
-  if (code == 0) bench.row("balance_total", total, "s", floor.empty() ? 0 : floor.median());
-  return code;
 }
 
 }  // namespace
@@ -145,8 +138,8 @@ Shape balance_shape() {
   return {"balance",
           "60 iterations of 64 unequal chares, balanced every 20",
           {{"balance_total", "elapsed time; its limit: 20 iterations as mapped first, 40 ideal",
-            Needs::two_pes}},
-          &run_balance};
+            Needs::two_pes, "s"}},
+          &measure_balance};
 }
 
 }  // namespace bench

@@ -40,7 +40,7 @@ tess::balance::Assignment move_a_tenth(const tess::balance::Snapshot& snapshot) 
   return to;
 }
 
-tess::Task measure_round(const Bench& bench, Samples& samples) {
+tess::Task measure_round(const Bench& bench, std::span<Figure> of_rows) {
   const std::int32_t n = bench.size(100'000, 500);
   const std::int32_t n_phases = bench.repeat() + 1;
   const auto residents = tess::create<Resident>(tess::range(n));
@@ -59,15 +59,8 @@ tess::Task measure_round(const Bench& bench, Samples& samples) {
     TESS_CHECK(round.n_moved <= n_wanted && n_wanted <= round.n_moved + round.n_unknown,
                round.n_moved, " of ", round.n_elements, " elements were moved, and ",
                round.n_unknown, " loads are unknown");
-    samples.add(1e3 * (round.round_seconds - (subtracts ? round.strategy_seconds : 0)));
+    of_rows[0].samples.add(1e3 * (round.round_seconds - (subtracts ? round.strategy_seconds : 0)));
   }
-}
-
-int run_round(Bench& bench) {
-  Samples samples;
-  const int code = bench.run([&] { return measure_round(bench, samples); });
-  if (code == 0) bench.row("balance_round", samples, "ms");
-  return code;
 }
 
 }  // namespace
@@ -75,8 +68,8 @@ int run_round(Bench& bench) {
 Shape balance_round_shape() {
   return {"balance_round",
           "a round over 100 000 elements of 1 KiB, a tenth of which moves",
-          {{"balance_round", "without the strategy's own time", Needs::two_pes}},
-          &run_round};
+          {{"balance_round", "without the strategy's own time", Needs::two_pes, "ms"}},
+          &measure_round};
 }
 
 }  // namespace bench

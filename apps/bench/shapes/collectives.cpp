@@ -155,36 +155,45 @@ tess::Task measure_section(const Bench& bench, std::int32_t n_elements, Samples&
   co_await hold_votes(bench, begin, n_members, samples);
 }
 
+/// The elements of a full run, and of a quick one.
+struct VoteRow {
+  const char* name;
+  const char* meaning;
+  tess::Task (*measure)(const Bench&, std::int32_t n_elements, Samples&);
+  std::int32_t n, n_quick;
+};
+constexpr VoteRow rows[] = {
+    {"broadcast_sum_1k", "1 000 elements of a dense array", &measure_dense, 1000, 100},
+    {"broadcast_sum_10k", "10 000 elements of a dense array", &measure_dense, 10'000, 1000},
+    {"section_sum_100_of_10k", "a section of 100 of the 10 000 elements", &measure_section, 10'000,
+     1000},
+    {"broadcast_sum_100k", "100 000 elements of a dense array", &measure_dense, 100'000, 1000},
+    {"broadcast_sum_1M_sparse", "10^6 elements of a sparse array", &measure_sparse, 1'000'000,
+     2000}};
+
 int run_collectives(Bench& bench) {
-  const auto measure = [&bench](const char* name, auto program, std::int32_t n_elements) {
-    if (!bench.wants(name)) return 0;
+  for (const VoteRow& row : rows) {
+    if (!bench.wants(row.name)) continue;
     Samples samples;
-    const int code = bench.run([&] { return program(bench, n_elements, samples); });
-    if (code == 0) bench.row(name, samples, "ns");
-    return code;
-  };
-  int code = measure("broadcast_sum_1k", &measure_dense, bench.size(1000, 100));
-  if (code == 0) code = measure("broadcast_sum_10k", &measure_dense, bench.size(10'000, 1000));
-  if (code == 0)
-    code = measure("section_sum_100_of_10k", &measure_section, bench.size(10'000, 1000));
-  if (code == 0) code = measure("broadcast_sum_100k", &measure_dense, bench.size(100'000, 1000));
-  if (code == 0)
-    code = measure("broadcast_sum_1M_sparse", &measure_sparse, bench.size(1'000'000, 2000));
-  return code;
+    const int code =
+        bench.run([&] { return row.measure(bench, bench.size(row.n, row.n_quick), samples); });
+    if (code != 0) return code;
+    bench.row(row.name, samples, "ns");
+  }
+  return 0;
 }
 
 }  // namespace
 
 Shape collectives_shape() {
-  return {"collectives",
-          "broadcast of an int that all contribute, the sum starts the next of 200 rounds, "
-          "elapsed time over rounds and elements",
-          {{"broadcast_sum_1k", "1 000 elements of a dense array"},
-           {"broadcast_sum_10k", "10 000 elements of a dense array"},
-           {"section_sum_100_of_10k", "a section of 100 of the 10 000 elements"},
-           {"broadcast_sum_100k", "100 000 elements of a dense array"},
-           {"broadcast_sum_1M_sparse", "10^6 elements of a sparse array"}},
-          &run_collectives};
+  Shape shape{"collectives",
+              "broadcast of an int that all contribute, the sum starts the next of 200 rounds, "
+              "elapsed time over rounds and elements",
+              {},
+              nullptr,
+              &run_collectives};
+  for (const VoteRow& row : rows) shape.rows.push_back({row.name, row.meaning});
+  return shape;
 }
 
 }  // namespace bench

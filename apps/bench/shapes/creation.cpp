@@ -156,7 +156,7 @@ Shape creation_shape() {
   rows.push_back({"ordinary_message", "a message to each of the elements once they are there"});
   return {"creation",
           "10^6 elements of a sparse 3D array created on demand, elapsed time over elements", rows,
-          &run_creation};
+          nullptr, &run_creation};
 }
 
 }  // namespace bench

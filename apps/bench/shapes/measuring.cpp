@@ -65,6 +65,7 @@ Shape measuring_shape() {
   return {"measuring",
           "messages of 5 us, with a balancer's measuring and without, in turns",
           {{"measuring", "what measuring adds to the elapsed time"}},
+          nullptr,
           &run_measuring};
 }
 

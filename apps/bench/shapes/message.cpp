@@ -5,6 +5,8 @@
 #include "apps/bench/shapes/shapes.hpp"
 #include "runtime/runtime.hpp"
 
+#include <array>
+
 namespace bench {
 namespace {
 
@@ -169,11 +171,7 @@ tess::Task ask_about(tess::ArrayProxy<Asker> askers, std::int32_t n, std::int64_
   TESS_CHECK(n_replies == n * n_asks, n_replies, " replies came, not ", n * n_asks);
 }
 
-struct MessageSamples {
-  Samples message, epoch, prioritised, mixed, distinct, expedited, inlined, ask;
-};
-
-tess::Task measure_message(const Bench& bench, MessageSamples& samples) {
+tess::Task measure_message(const Bench& bench, std::span<Figure> of_rows) {
   const std::int32_t n = bench.size(1000, 50);
   const auto referee = tess::create<Referee>(tess::each_pe);
   const MessageRun<Sent::plain> plain(n, referee);
@@ -186,43 +184,19 @@ tess::Task measure_message(const Bench& bench, MessageSamples& samples) {
   std::int64_t n_hops = bench.size(500, 20);
   for (std::int32_t turn = 0; turn <= bench.repeat(); ++turn) {
     const ChainStart start{n_hops, EndedBy::message};
-    double message = 0, epoch = 0, some = 0, mix = 0, all = 0, first = 0, at_once = 0, ask = 0;
-    co_await hop_about(plain, start, message);
-    if (bench.wants("message_in_epoch")) co_await hop_about(plain, {n_hops, EndedBy::epoch}, epoch);
-    if (bench.wants("message_prioritised")) co_await hop_about(prioritised, start, some);
-    if (bench.wants("message_mixed")) co_await hop_about(mixed, start, mix);
-    if (bench.wants("message_distinct")) co_await hop_about(distinct, start, all);
-    if (bench.wants("message_expedited")) co_await hop_about(expedited, start, first);
-    if (bench.wants("message_inline")) co_await hop_about(inlined, start, at_once);
-    if (bench.wants("message_ask")) co_await ask_about(askers, n, n_hops, ask);
-    if (turn == 0) {
-      n_hops = times_in_sample(message * n, bench.size(5000, 20));
-    } else {
-      samples.message.add(message);
-      samples.epoch.add(epoch);
-      samples.prioritised.add(some);
-      samples.mixed.add(mix);
-      samples.distinct.add(all);
-      samples.expedited.add(first);
-      samples.inlined.add(at_once);
-      samples.ask.add(ask);
-    }
+    std::array<double, 8> took{};  // by row
+    co_await hop_about(plain, start, took[0]);
+    if (bench.wants("message_in_epoch"))
+      co_await hop_about(plain, {n_hops, EndedBy::epoch}, took[1]);
+    if (bench.wants("message_prioritised")) co_await hop_about(prioritised, start, took[2]);
+    if (bench.wants("message_mixed")) co_await hop_about(mixed, start, took[3]);
+    if (bench.wants("message_distinct")) co_await hop_about(distinct, start, took[4]);
+    if (bench.wants("message_expedited")) co_await hop_about(expedited, start, took[5]);
+    if (bench.wants("message_inline")) co_await hop_about(inlined, start, took[6]);
+    if (bench.wants("message_ask")) co_await ask_about(askers, n, n_hops, took[7]);
+    if (turn == 0) n_hops = times_in_sample(took[0] * n, bench.size(5000, 20));
+    for (std::size_t i = 0; turn > 0 && i < took.size(); ++i) of_rows[i].samples.add(took[i]);
   }
-}
-
-int run_message(Bench& bench) {
-  MessageSamples samples;
-  const int code = bench.run([&] { return measure_message(bench, samples); });
-  if (code != 0) return code;
-  bench.row("message", samples.message, "ns");
-  bench.row("message_in_epoch", samples.epoch, "ns");
-  bench.row("message_prioritised", samples.prioritised, "ns");
-  bench.row("message_mixed", samples.mixed, "ns");
-  bench.row("message_distinct", samples.distinct, "ns");
-  bench.row("message_expedited", samples.expedited, "ns");
-  bench.row("message_inline", samples.inlined, "ns");
-  bench.row("message_ask", samples.ask, "ns");
-  return 0;
 }
 
 }  // namespace
@@ -239,7 +213,7 @@ Shape message_shape() {
            {"message_inline", "a hop to an element of the same PE runs inside send()"},
            {"message_ask",
             "each element asks random ones and awaits each reply: a call and its reply"}},
-          &run_message};
+          &measure_message};
 }
 
 }  // namespace bench

@@ -48,7 +48,7 @@ class Nomad : public tess::Chare<Nomad, tess::Index1> {
   std::int64_t n_moves_ = 0;
 };
 
-tess::Task measure_migration(const Bench& bench, Samples& by_epoch, Samples& by_message) {
+tess::Task measure_migration(const Bench& bench, std::span<Figure> of_rows) {
   const std::int32_t n = bench.size(20'000, 200);
   const auto nomads = tess::create<Nomad>(tess::range(n));
   for (std::int32_t turn = 0; turn <= bench.repeat(); ++turn) {
@@ -65,18 +65,9 @@ tess::Task measure_migration(const Bench& bench, Samples& by_epoch, Samples& by_
     const std::int64_t n_moves = co_await nomads.reduce<&Nomad::check>();
     TESS_CHECK(n_moves == 2 * n, n_moves, " migrations were made, not ", 2 * n);
     if (turn == 0) continue;
-    by_epoch.add(epoch);
-    by_message.add(message);
+    of_rows[0].samples.add(epoch);
+    of_rows[1].samples.add(message);
   }
-}
-
-int run_migration(Bench& bench) {
-  Samples by_epoch, by_message;
-  const int code = bench.run([&] { return measure_migration(bench, by_epoch, by_message); });
-  if (code != 0) return code;
-  bench.row("migration_by_epoch", by_epoch, "ns");
-  bench.row("migration_by_message", by_message, "ns");
-  return 0;
 }
 
 }  // namespace
@@ -87,7 +78,7 @@ Shape migration_shape() {
           {{"migration_by_epoch", "ended by an epoch", Needs::two_pes},
            {"migration_by_message", "ended by a message that follows each and a reduction",
             Needs::two_pes}},
-          &run_migration};
+          &measure_migration};
 }
 
 }  // namespace bench

@@ -1,8 +1,7 @@
 // A ball between two elements, on the first and on the last PE: a number, a vector of bytes that is
 // copied into each message, or one that is moved along. In turns with it, the limits without a
 // runtime: raw MPI between processes, a cache line and a copy between cores.
-#include "apps/bench/core_ping.hpp"
-#include "apps/bench/mpi_raw.hpp"
+#include "apps/bench/limits.hpp"
 #include "apps/bench/shapes/shapes.hpp"
 #include "runtime/runtime.hpp"
 
@@ -234,7 +233,7 @@ Shape one_way_shape() {
                     "a vector of bytes, moved into the message", Needs::two_pes});
   }
   return {"one_way", "a ball between elements on the first and the last PE, elapsed time over hits",
-          rows, &run_one_way};
+          rows, nullptr, &run_one_way};
 }
 
 }  // namespace bench

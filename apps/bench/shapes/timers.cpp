@@ -76,6 +76,7 @@ Shape timers_shape() {
            {"timer_idle_worst", "the latest of them"},
            {"timer_busy", "the median, on a PE that runs entry methods of 5 us"},
            {"timer_busy_worst", "the latest of them"}},
+          nullptr,
           &run_timers};
 }
 

@@ -20,7 +20,7 @@ class Labourer : public tess::Chare<Labourer, tess::Index1> {
   }
 };
 
-tess::Task measure_work(const Bench& bench, Samples& elapsed, Samples& busiest) {
+tess::Task measure_work(const Bench& bench, std::span<Figure> of_rows) {
   constexpr std::int32_t n = 64;
   const std::int64_t work = bench.size<std::int64_t>(400'000, 5000);
   const std::int32_t n_rounds = bench.size(10, 2);
@@ -37,17 +37,9 @@ tess::Task measure_work(const Bench& bench, Samples& elapsed, Samples& busiest) 
       TESS_CHECK(sum >= static_cast<double>(n * work), "only ", sum, " ns of work were done");
     }
     if (turn == 0) continue;
-    elapsed.add(1e-6 * took / n_rounds);
-    busiest.add(1e-6 * worked / n_rounds);
+    of_rows[0].samples.add(1e-6 * took / n_rounds);
+    of_rows[0].limit.add(1e-6 * worked / n_rounds);
   }
-}
-
-int run_work(Bench& bench) {
-  Samples elapsed, busiest;
-  const int code = bench.run([&] { return measure_work(bench, elapsed, busiest); });
-  if (code == 0)
-    bench.row("work_under_broadcast", elapsed, "ms", busiest.empty() ? 0 : busiest.median());
-  return code;
 }
 
 }  // namespace
@@ -55,8 +47,9 @@ int run_work(Bench& bench) {
 Shape work_shape() {
   return {"work",
           "a broadcast, 0.4 ms of work by each of 64 chares, a reduction",
-          {{"work_under_broadcast", "elapsed time of a round; its limit is the busiest PE's work"}},
-          &run_work};
+          {{"work_under_broadcast", "elapsed time of a round; its limit is the busiest PE's work",
+            Needs::nothing, "ms"}},
+          &measure_work};
 }
 
 }  // namespace bench

@@ -1,7 +1,5 @@
 #include "apps/collide_scene/output/files.hpp"
 
-#include "apps/collide_scene/output/picture.hpp"
-#include "apps/collide_scene/output/vtp.hpp"
 #include "apps/kit/write_file.hpp"
 
 #include <filesystem>

@@ -19,6 +19,20 @@ void prepare_files(const std::string& prefix, const std::vector<std::string>& en
 /// Gives the endings of the files of a run.
 [[nodiscard]] std::vector<std::string> endings();
 
+/// The scene as an SVG, seen from above and aside: models in pale colours, what collides from
+/// yellow to dark red by its number of hits. Only what is seen is in it: at most some ten thousand
+/// triangles as they are, more as rows of pixels. n_hits: one per object.
+[[nodiscard]] std::string picture(const Scene& scene, std::span<const std::uint32_t> n_hits);
+
+// Results for ParaView, as the text of VTP files with raw binary data behind it.
+
+/// The triangles (of boxes: their faces, as quadrilaterals) with the number of hits of the object,
+/// its model and its position in the scene. n_hits: one per object.
+[[nodiscard]] std::string hits_vtp(const Scene& scene, std::span<const std::uint32_t> n_hits);
+
+/// A segment per pair, between the centres of the boxes of the two, with the positions of both.
+[[nodiscard]] std::string pairs_vtp(const Scene& scene, std::span<const ScenePair> pairs);
+
 /// PREFIX.svg, PREFIX_hits.vtp, PREFIX_pairs.vtp. `pairs`: of the scene as it is.
 void write_files(const std::string& prefix, const Scene& scene, std::span<const ScenePair> pairs);
 

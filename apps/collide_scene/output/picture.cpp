@@ -1,5 +1,4 @@
-#include "apps/collide_scene/output/picture.hpp"
-
+#include "apps/collide_scene/output/files.hpp"
 #include "apps/collide_scene/output/view.hpp"
 #include "apps/kit/canvas.hpp"
 

@@ -24,23 +24,26 @@ void for_each_triangle(const Scene& scene, Use&& use) {
     const auto& [p, q, r] = scene.triangles[t].corners;
     use(p, q, r, t);
   }
-  constexpr std::array<std::array<unsigned, 4>, 6> faces{
-      {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}}};
-  for (std::size_t b = 0; b < scene.boxes.size(); ++b) {
-    const Aabb& box = scene.boxes[b];
-    const auto corner = [&](unsigned bits) {
-      return Point{(bits & 1U) != 0 ? box.hi[0] : box.lo[0],
-                   (bits & 2U) != 0 ? box.hi[1] : box.lo[1],
-                   (bits & 4U) != 0 ? box.hi[2] : box.lo[2]};
-    };
-    for (const auto& face : faces) {
-      use(corner(face[0]), corner(face[1]), corner(face[2]), scene.triangles.size() + b);
-      use(corner(face[0]), corner(face[2]), corner(face[3]), scene.triangles.size() + b);
+  for (std::size_t b = 0; b < scene.boxes.size(); ++b)
+    for (const auto& [p, q, r, last] : faces_of(scene.boxes[b])) {
+      use(p, q, r, scene.triangles.size() + b);
+      use(p, r, last, scene.triangles.size() + b);
     }
-  }
 }
 
 }  // namespace
+
+std::array<std::array<Point, 4>, 6> faces_of(const Aabb& box) {
+  // Corners by the bits of their place: 1 for the upper x, 2 for y, 4 for z.
+  constexpr std::array<std::array<unsigned, 4>, 6> faces{
+      {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}}};
+  std::array<std::array<Point, 4>, 6> out{};
+  for (std::size_t f = 0; f < 6; ++f)
+    for (std::size_t i = 0; i < 4; ++i)
+      for (unsigned k = 0; k < 3; ++k)
+        out[f][i][k] = (faces[f][i] >> k & 1U) != 0 ? box.hi[k] : box.lo[k];
+  return out;
+}
 
 View::View(const Scene& scene, int n_pixels) {
   constexpr double inf = std::numeric_limits<double>::infinity();

@@ -14,6 +14,10 @@
 
 namespace collide_scene {
 
+/// The corners of the six faces of a box, in order around each.
+[[nodiscard]] std::array<std::array<tess::collide::Point, 4>, 6> faces_of(
+    const tess::collide::Aabb& box);
+
 /// A triangle in pixels, y downwards; `depth` grows towards the viewer.
 struct Seen {
   std::array<double, 3> x{}, y{}, depth{};

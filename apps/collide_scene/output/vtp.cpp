@@ -1,4 +1,5 @@
-#include "apps/collide_scene/output/vtp.hpp"
+#include "apps/collide_scene/output/files.hpp"
+#include "apps/collide_scene/output/view.hpp"
 
 #include <bit>
 #include <fmt/format.h>
@@ -51,15 +52,6 @@ class VtpFile {
   std::string data_;
 };
 
-/// Corners of the faces of a box, by the bits of their place: 1 for the upper x, 2 for y, 4 for z.
-constexpr std::array<std::array<unsigned, 4>, 6> faces{
-    {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}}};
-
-Point corner(const Aabb& box, unsigned bits) {
-  return {(bits & 1U) != 0 ? box.hi[0] : box.lo[0], (bits & 2U) != 0 ? box.hi[1] : box.lo[1],
-          (bits & 4U) != 0 ? box.hi[2] : box.lo[2]};
-}
-
 }  // namespace
 
 std::string hits_vtp(const Scene& scene, std::span<const std::uint32_t> n_hits) {
@@ -75,8 +67,8 @@ std::string hits_vtp(const Scene& scene, std::span<const std::uint32_t> n_hits) 
     add_cell(t);
   }
   for (std::size_t b = 0; b < scene.boxes.size(); ++b)
-    for (const auto& face : faces) {
-      for (const unsigned bits : face) points.push_back(corner(scene.boxes[b], bits));
+    for (const auto& face : faces_of(scene.boxes[b])) {
+      points.insert(points.end(), face.begin(), face.end());
       add_cell(scene.triangles.size() + b);
     }
   VtpFile file;

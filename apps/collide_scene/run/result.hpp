@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <optional>
+#include <sys/resource.h>
 #include <vector>
 
 namespace collide_scene {
@@ -81,6 +82,10 @@ struct RunResult {
 };
 
 /// The greatest resident size of this process so far.
-[[nodiscard]] std::uint64_t peak_memory_bytes();
+[[nodiscard]] inline std::uint64_t peak_memory_bytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+}
 
 }  // namespace collide_scene

@@ -1,4 +1,4 @@
-#include "apps/collide_scene/scenes/adversaries.hpp"
+#include "apps/collide_scene/scenes/kinds.hpp"
 
 #include <cmath>
 #include <fmt/core.h>

@@ -1,9 +1,16 @@
-#include "apps/collide_scene/scenes/crowd.hpp"
-
+// Many closed bodies that move through each other, in clusters of uneven density: work that shifts
+// from place to place. The pose of a body is a function of its number and the step, so every PE and
+// every run computes the same.
+//
+//     ⁖⁘⁙⁘ →   ∴ ⁖        Cluster c has a share of the bodies proportional to 2^-c, and all clusters
+//     ⁙⁘⁖⁙      ↙    ·    have one radius. Each goes around a common centre, and its bodies around
+//                         the centre of the cluster, the inner ones faster.
 #include "apps/collide_scene/scenes/elementary.hpp"
+#include "apps/collide_scene/scenes/kinds.hpp"
 #include "runtime/core/hash.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <fmt/core.h>
@@ -14,6 +21,30 @@ namespace {
 
 using tess::collide::Point;
 using tess::collide::Triangle;
+
+class Crowd {
+ public:
+  static constexpr std::uint64_t triangles_per_body = 128;
+
+  Crowd(std::uint64_t n_bodies, std::uint64_t seed);
+
+  [[nodiscard]] std::uint64_t n_bodies() const noexcept { return bodies_.size(); }
+  /// The triangles of a body at a step, which may be fractional: the same mesh each time, moved as
+  /// a rigid body. `out` has triangles_per_body places.
+  void triangles(std::uint64_t body, double step, std::span<tess::collide::Triangle> out) const;
+
+ private:
+  struct Body {
+    std::uint32_t cluster;
+    double distance, height, phase;  // from the axis of the cluster, along it, in turns about it
+    double spin, scale;              // turns per step about its own axis; size
+  };
+  [[nodiscard]] tess::collide::Point centre(const Body& body, double step) const noexcept;
+
+  double cluster_radius_;
+  std::vector<Body> bodies_;
+  std::array<tess::collide::Triangle, triangles_per_body> mesh_;
+};
 
 constexpr std::uint32_t kClusters = 8;
 constexpr double kTurnsPerStep = 1.0 / 1024;  // of the clusters about the common centre
@@ -51,8 +82,6 @@ std::array<Triangle, Crowd::triangles_per_body> ball() {
 std::uint32_t cluster_of(std::uint64_t hash) {
   return std::min(static_cast<std::uint32_t>(std::countl_zero(hash)), kClusters - 1);
 }
-
-}  // namespace
 
 Crowd::Crowd(std::uint64_t n_bodies, std::uint64_t seed)
     : cluster_radius_(1.8 * cube_root(static_cast<double>(n_bodies))), mesh_(ball()) {
@@ -92,6 +121,8 @@ void Crowd::triangles(std::uint64_t number, double step, std::span<Triangle> out
                                 at[2] + body.scale * p[2]};
     }
 }
+
+}  // namespace
 
 Scene crowd(std::uint64_t n, std::uint64_t seed) {
   constexpr std::uint64_t each = Crowd::triangles_per_body;

@@ -1,6 +1,5 @@
-#include "apps/collide_scene/scenes/dragon.hpp"
-
 #include "apps/collide_scene/scenes/elementary.hpp"
+#include "apps/collide_scene/scenes/kinds.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,5 @@
-#include "apps/collide_scene/scenes/needles.hpp"
-
 #include "apps/collide_scene/scenes/elementary.hpp"
+#include "apps/collide_scene/scenes/kinds.hpp"
 #include "runtime/core/hash.hpp"
 
 #include <cmath>

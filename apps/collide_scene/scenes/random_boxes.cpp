@@ -1,6 +1,5 @@
-#include "apps/collide_scene/scenes/random_boxes.hpp"
-
 #include "apps/collide_scene/scenes/elementary.hpp"
+#include "apps/collide_scene/scenes/kinds.hpp"
 #include "runtime/core/hash.hpp"
 
 #include <fmt/core.h>

@@ -1,11 +1,6 @@
 #include "apps/collide_scene/scenes/scene.hpp"
 
-#include "apps/collide_scene/scenes/adversaries.hpp"
-#include "apps/collide_scene/scenes/crowd.hpp"
-#include "apps/collide_scene/scenes/dragon.hpp"
-#include "apps/collide_scene/scenes/needles.hpp"
-#include "apps/collide_scene/scenes/random_boxes.hpp"
-#include "apps/collide_scene/scenes/waves.hpp"
+#include "apps/collide_scene/scenes/kinds.hpp"
 #include "runtime/core/error.hpp"
 #include "runtime/core/number.hpp"
 

@@ -1,6 +1,5 @@
-#include "apps/collide_scene/scenes/waves.hpp"
-
 #include "apps/collide_scene/scenes/elementary.hpp"
+#include "apps/collide_scene/scenes/kinds.hpp"
 
 #include <fmt/core.h>
 

@@ -3,6 +3,7 @@
 #include "runtime/core/hash.hpp"
 
 #include <cmath>
+#include <type_traits>
 
 namespace collide_scene::stability {
 namespace {
@@ -40,28 +41,37 @@ double log_uniform(tess::Random& random, double decades) {
   return std::pow(10, -decades * random.unit());
 }
 
-}  // namespace
-
-Scene random_boxes_around_zero(std::size_t n) {
-  tess::Random random(3);
-  const double edge = 2 * std::cbrt(1.0 / static_cast<double>(n));
-  const auto extent = [&] { return 2 * edge * random.unit(); };
+/// A scene of n objects, each made by make(random, i): boxes or triangles.
+template <class Make>
+Scene scene_of(std::size_t n, std::uint64_t seed, const Make& make) {
+  tess::Random random(seed);
   Scene scene;
   for (std::size_t i = 0; i < n; ++i) {
-    const Point size{extent(), extent(), extent()};
-    scene.boxes.push_back(box_at(random_point(random, 1), size));
+    const auto object = make(random, i);
+    if constexpr (std::is_same_v<decltype(object), const Aabb>)
+      scene.boxes.push_back(object);
+    else
+      scene.triangles.push_back(object);
   }
   return scene;
 }
 
+}  // namespace
+
+Scene random_boxes_around_zero(std::size_t n) {
+  const double edge = 2 * std::cbrt(1.0 / static_cast<double>(n));
+  return scene_of(n, 3, [&](tess::Random& random, std::size_t) {
+    const auto extent = [&] { return 2 * edge * random.unit(); };
+    const Point size{extent(), extent(), extent()};
+    return box_at(random_point(random, 1), size);
+  });
+}
+
 Scene random_triangles(std::size_t n) {
-  tess::Random random(5);
-  Scene scene;
-  for (std::size_t i = 0; i < n; ++i) {
+  return scene_of(n, 5, [](tess::Random& random, std::size_t) {
     const Point centre = random_point(random, 1);
-    scene.triangles.push_back(triangle_at(random, centre, 0.25));
-  }
-  return scene;
+    return triangle_at(random, centre, 0.25);
+  });
 }
 
 Scene changed(Scene scene, double scale, double offset) {
@@ -143,9 +153,7 @@ Scene identical_triangles(std::size_t n) {
 }
 
 Scene flat_boxes(std::size_t n, int n_flat) {
-  tess::Random random(7);
-  Scene scene;
-  for (std::size_t i = 0; i < n; ++i) {
+  return scene_of(n, 7, [&](tess::Random& random, std::size_t) {
     Point lo{}, hi{};
     for (double& at : lo) at = 0.1 * static_cast<double>(random.below(6));
     const std::uint64_t first = random.below(3);
@@ -154,61 +162,50 @@ Scene flat_boxes(std::size_t n, int n_flat) {
       const bool flat = k < static_cast<std::uint64_t>(n_flat);
       hi[axis] = lo[axis] + (flat ? 0 : 0.1 * static_cast<double>(random.below(3)));
     }
-    scene.boxes.push_back({lo, hi});
-  }
-  return scene;
+    return Aabb{lo, hi};
+  });
 }
 
 Scene mixed_boxes(std::size_t n, double decades) {
-  tess::Random random(11);
-  Scene scene;
-  for (std::size_t i = 0; i < n; ++i) {
+  return scene_of(n, 11, [&](tess::Random& random, std::size_t) {
     const double edge = 0.6 * log_uniform(random, decades);
-    scene.boxes.push_back(box_at(random_point(random, 1), {edge, edge, edge}));
-  }
-  return scene;
+    return box_at(random_point(random, 1), {edge, edge, edge});
+  });
 }
 
 Scene mixed_triangles(std::size_t n, double decades) {
-  tess::Random random(13);
-  Scene scene;
-  for (std::size_t i = 0; i < n; ++i) {
+  return scene_of(n, 13, [&](tess::Random& random, std::size_t) {
     const Point centre = random_point(random, 1);
     const double size = log_uniform(random, decades);
-    scene.triangles.push_back(triangle_at(random, centre, size));
-  }
-  return scene;
+    return triangle_at(random, centre, size);
+  });
 }
 
 Scene needle_boxes(std::size_t n, double aspect) {
-  tess::Random random(17);
   constexpr double length = 0.35;
-  Scene scene;
-  for (std::size_t i = 0; i < n; ++i) {
+  return scene_of(n, 17, [&](tess::Random& random, std::size_t) {
     // On a lattice, so that thin ones meet, too.
     Point centre{}, extent{};
     for (double& at : centre) at = 0.1 * static_cast<double>(random.below(10));
     const std::uint64_t along = random.below(3);
     for (std::size_t k = 0; k < 3; ++k) extent[k] = k == along ? length : length / aspect;
-    scene.boxes.push_back(box_at(centre, extent));
-  }
-  return scene;
+    return box_at(centre, extent);
+  });
 }
 
 Scene needle_triangles(std::size_t n, double aspect) {
-  tess::Random random(19);
   constexpr double length = 0.6;
-  Scene scene;
-  for (std::size_t i = 0; i < n; ++i) {
-    auto& [a, b, c] = scene.triangles.emplace_back().corners;
+  return scene_of(n, 19, [&](tess::Random& random, std::size_t i) {
+    Triangle triangle{};
+    auto& [a, b, c] = triangle.corners;
     a = random_point(random, 1);
     if (i % 2 == 0) a[2] = 0;  // half of them near a plane, where they meet
     for (std::size_t k = 0; k < 3; ++k) {
       b[k] = a[k] + (k == 2 && i % 2 == 0 ? 0 : length * (random.unit() - 0.5));
       c[k] = a[k] + length / aspect * random.unit();
     }
-  }
-  return scene;
+    return triangle;
+  });
 }
 
 Scene in_one_plane(std::size_t n, double slope) {

@@ -1,7 +1,8 @@
-#include "apps/lb_lab/collision/collision.hpp"
-
+// The kind of workload in which the chares are the voxels of a collision. They are made on demand
+// where clusters of boxes drift, and end when the boxes have passed. A cut of the plane is the grid
+// of voxels, and its number of chares per PE an upper bound: voxels without boxes do not exist.
 #include "apps/lb_lab/collision/owner.hpp"
-#include "apps/lb_lab/run/balanced.hpp"
+#include "apps/lb_lab/run/kind.hpp"
 #include "apps/lb_lab/run/stepped.hpp"
 #include "collide/pairs.hpp"
 
@@ -14,8 +15,7 @@ constexpr std::int32_t owners_a_pe = 4;
 
 class Collision final : public Stepped {
  public:
-  Collision(const Experiment& experiment, tess::GroupProxy<Station> stations, Outcome& outcome)
-      : experiment_(experiment), stations_(stations), outcome_(outcome) {}
+  using Stepped::Stepped;
 
   tess::BalancerProxy create() override {
     const Domain& domain = experiment_.plan.problem.domain;
@@ -41,18 +41,9 @@ class Collision final : public Stepped {
   }
 
  private:
-  const Experiment& experiment_;
-  const tess::GroupProxy<Station> stations_;
-  Outcome& outcome_;
   tess::collide::Collider collider_;
   tess::ArrayProxy<Owner> owners_;
 };
-
-tess::Task run_collision(const Experiment& experiment, tess::GroupProxy<Station> stations,
-                         Outcome& outcome) {
-  Collision workload(experiment, stations, outcome);
-  co_await run_stepped(experiment, stations, workload, outcome);
-}
 
 /// The serial collider, on a grid of its own.
 std::uint64_t serial_answer_of_collision(const Problem& p) {
@@ -81,6 +72,6 @@ std::string describe_collision(const Problem& p) {
 }  // namespace
 
 const Kind collision_kind{Speeds::relative, &serial_answer_of_collision, &nominal_seconds,
-                          &describe_collision, &run_collision};
+                          &describe_collision, &run_stepped<Collision>};
 
 }  // namespace lb_lab

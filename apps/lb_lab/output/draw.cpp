@@ -1,5 +1,7 @@
 #include "apps/lb_lab/output/draw.hpp"
 
+#include "apps/kit/rows.hpp"
+
 #include <algorithm>
 #include <fmt/format.h>
 
@@ -94,15 +96,11 @@ void Drawings::write(const std::string& directory) const {
                                           best.row.n_pes, best.row.per_pe),
                      .x_label = "iteration",
                      .y_label = "max/average"};
-  std::map<std::string, std::size_t> at;
   const Run* drawn = nullptr;  // the fastest that was balanced at the best cut
   for (const Run& run : runs_) {
     const Row& row = run.row;
-    const auto [series, is_new] = at.try_emplace(row.strategy, time.series.size());
-    if (is_new) time.series.push_back({.name = row.strategy});
     const double per_pe = row.per_pe;
-    time.series[series->second].points.push_back(
-        {per_pe, 1e3 * row.seconds_total / row.n_iterations});
+    kit::add_point(time, row.strategy, per_pe, 1e3 * row.seconds_total / row.n_iterations);
     if (std::ranges::count(time.x_ticks, per_pe) == 0) time.x_ticks.push_back(per_pe);
     if (row.per_pe != best.row.per_pe) continue;
     balance.series.push_back(curve_of(row));

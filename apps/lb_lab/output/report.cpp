@@ -52,6 +52,14 @@ const kit::Rows<Row>& report() {
   return rows;
 }
 
+const Row& best_of(const Sweep& sweep, const std::string& workload) {
+  const Row* best = nullptr;
+  for (const Row& row : sweep.rows)
+    if (row.workload == workload && (best == nullptr || row.seconds_total < best->seconds_total))
+      best = &row;
+  return *best;
+}
+
 std::string best_text(const Sweep& sweep) {
   std::string out;
   for (const std::string& workload : sweep.settings.workloads) {

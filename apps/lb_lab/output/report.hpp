@@ -10,6 +10,8 @@
 namespace lb_lab {
 
 [[nodiscard]] const kit::Rows<Row>& report();
+/// The fastest row of a workload.
+[[nodiscard]] const Row& best_of(const Sweep& sweep, const std::string& workload);
 /// The best cut and strategy of each workload, a line each.
 [[nodiscard]] std::string best_text(const Sweep& sweep);
 /// Gives the same as rows of the JSON.

@@ -1,7 +1,6 @@
-#include "apps/lb_lab/particles/particles.hpp"
-
+// The kind of workload in which the chares are regions of space with their particles (region.hpp).
 #include "apps/lb_lab/particles/region.hpp"
-#include "apps/lb_lab/run/balanced.hpp"
+#include "apps/lb_lab/run/kind.hpp"
 #include "apps/lb_lab/run/stepped.hpp"
 
 #include <fmt/format.h>
@@ -32,8 +31,7 @@ class Source : public tess::Group<Source> {
 
 class Particles final : public Stepped {
  public:
-  Particles(const Experiment& experiment, tess::GroupProxy<Station> stations, Outcome& outcome)
-      : experiment_(experiment), stations_(stations), outcome_(outcome) {}
+  using Stepped::Stepped;
 
   tess::BalancerProxy create() override {
     regions_ = tess::create<Region>(tess::sparse);
@@ -51,17 +49,8 @@ class Particles final : public Stepped {
   }
 
  private:
-  const Experiment& experiment_;
-  const tess::GroupProxy<Station> stations_;
-  Outcome& outcome_;
   tess::ArrayProxy<Region> regions_;
 };
-
-tess::Task run_particles(const Experiment& experiment, tess::GroupProxy<Station> stations,
-                         Outcome& outcome) {
-  Particles workload(experiment, stations, outcome);
-  co_await run_stepped(experiment, stations, workload, outcome);
-}
 
 std::uint64_t serial_answer_of_particles(const Problem& p) {
   const Swarm swarm(p);
@@ -83,6 +72,6 @@ std::string describe_particles(const Problem& p) {
 }  // namespace
 
 const Kind particles_kind{Speeds::relative, &serial_answer_of_particles, &nominal_seconds,
-                          &describe_particles, &run_particles};
+                          &describe_particles, &run_stepped<Particles>};
 
 }  // namespace lb_lab

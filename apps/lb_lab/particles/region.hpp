@@ -3,15 +3,9 @@
 // begin of an iteration. A particle that enters has done its iteration, and waits among the
 // arrivals.
 //
-// apps/particles has such a chare, too (simulation/block.hpp), and this one does not use it. The
-// laboratory needs a plane with a given number of blocks, one epoch per iteration, an answer with a
-// serial oracle that does not depend on the cut, and work that it can charge to a simulated PE or
-// stretch on a slow one. A Block of apps/particles lives in three dimensions, moves its particles
-// for many steps per epoch by the rules of a scene, and depends on a station that holds fields,
-// objects and the audit. What both have in common is the protocol: arrivals wait for their
-// iteration, an empty chare ends, leavers are sent with create-on-demand. These are the 30 lines of
-// enter(), take_in() and send_leavers(), and a shared base class with its two parameters (particle,
-// context) would not be shorter.
+// A Block of apps/particles has the same protocol: arrivals wait for their iteration, an empty
+// chare ends, leavers are sent with create-on-demand. These are the 30 lines of enter(), take_in() and
+// send_leavers(), and a shared base with its two parameters (particle, context) is not shorter.
 #pragma once
 
 #include "apps/lb_lab/particles/swarm.hpp"

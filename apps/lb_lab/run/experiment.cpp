@@ -1,6 +1,5 @@
 #include "apps/lb_lab/run/experiment.hpp"
 
-#include "apps/lb_lab/run/balanced.hpp"
 #include "apps/lb_lab/run/kind.hpp"
 #include "runtime/balance/strategy.hpp"
 

@@ -1,32 +1,29 @@
 #include "apps/lb_lab/run/stepped.hpp"
 
-#include "apps/lb_lab/run/balanced.hpp"
-
 namespace lb_lab {
 
-tess::Task run_stepped(const Experiment& experiment, tess::GroupProxy<Station> stations,
-                       Stepped& workload, Outcome& outcome) {
-  const Plan& plan = experiment.plan;
+tess::Task Stepped::run() {
+  const Plan& plan = experiment_.plan;
   const std::int32_t n = plan.problem.n_iterations;
   tess::BalancerProxy balancer;
-  co_await tess::epoch([&] { balancer = workload.create(); });
-  co_await workload.begin();
-  co_await tess::epoch([&] { stations.broadcast<&Station::first_begins>(); });
+  co_await tess::epoch([&] { balancer = create(); });
+  co_await begin();
+  co_await tess::epoch([&] { stations_.broadcast<&Station::first_begins>(); });
 
-  outcome.began = tess::seconds(tess::now());
+  outcome_.began = tess::seconds(tess::now());
   for (std::int32_t t = 0; t < n; ++t) {
-    co_await workload.step(t);
-    co_await tess::epoch([&] { stations.broadcast<&Station::iteration_ends>(t); });
+    co_await step(t);
+    co_await tess::epoch([&] { stations_.broadcast<&Station::iteration_ends>(t); });
     if (plan.sync != Sync::at_period || (t + 1) % plan.period != 0 || t + 1 == n) continue;
     co_await balancer.round();
     const std::int32_t phase = (t + 1) / plan.period - 1;
-    co_await tess::epoch([&] { stations.broadcast<&Station::round_ends>(phase); });
+    co_await tess::epoch([&] { stations_.broadcast<&Station::round_ends>(phase); });
   }
-  outcome.seconds = tess::seconds(tess::now()) - outcome.began;
+  outcome_.seconds = tess::seconds(tess::now()) - outcome_.began;
 
-  co_await workload.end();
-  outcome.answer = co_await stations.reduce<&Station::give_answer>();
-  if (balances(experiment)) outcome.rounds = balancer.history();
+  co_await end();
+  outcome_.answer = co_await stations_.reduce<&Station::give_answer>();
+  if (balances(experiment_)) outcome_.rounds = balancer.history();
 }
 
 }  // namespace lb_lab

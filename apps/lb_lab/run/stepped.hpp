@@ -12,7 +12,8 @@ namespace lb_lab {
 /// One such workload. PE 0 calls it.
 class Stepped {
  public:
-  Stepped() = default;
+  Stepped(const Experiment& experiment, tess::GroupProxy<Station> stations, Outcome& outcome)
+      : experiment_(experiment), stations_(stations), outcome_(outcome) {}
   Stepped(const Stepped&) = delete;
   Stepped& operator=(const Stepped&) = delete;
   virtual ~Stepped() = default;
@@ -24,10 +25,22 @@ class Stepped {
   virtual tess::Task step(std::int32_t iteration) = 0;
   /// All chares give their part of the answer to the station of their PE, and end.
   virtual tess::Task end() = 0;
+
+  /// Runs it, and fills the outcome except for the records.
+  tess::Task run();
+
+ protected:
+  const Experiment& experiment_;
+  const tess::GroupProxy<Station> stations_;
+  Outcome& outcome_;
 };
 
-/// Runs it, and fills the outcome except for the records.
+/// Kind::run of such a workload.
+template <class Workload>
 tess::Task run_stepped(const Experiment& experiment, tess::GroupProxy<Station> stations,
-                       Stepped& workload, Outcome& outcome);
+                       Outcome& outcome) {
+  Workload workload(experiment, stations, outcome);
+  co_await workload.run();
+}
 
 }  // namespace lb_lab

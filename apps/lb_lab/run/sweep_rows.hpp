@@ -32,7 +32,4 @@ struct Sweep {
   std::string wrong;  ///< the first run with another answer than the serial one; empty: none
 };
 
-/// The fastest row of a workload.
-[[nodiscard]] const Row& best_of(const Sweep& sweep, const std::string& workload);
-
 }  // namespace lb_lab

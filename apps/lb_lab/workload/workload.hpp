@@ -36,18 +36,18 @@ enum class Shape : std::uint8_t { line, plane };
 enum class Traffic : std::uint8_t { silent, neighbours };
 
 struct Kind;
-extern const Kind cells_kind;
+extern const Kind cells_kind, collision_kind, particles_kind;
 
 struct Workload {
   std::string name;
   std::string_view what;
-  Shape shape = Shape::line;
-  Traffic traffic = Traffic::silent;  ///< silent: a cell does not depend on its neighbours
   // Of workloads of cells only:
   /// Relative work of a cell in an iteration, at least 0, about 1 on average.
   double (*work)(const Problem&, Cell, std::int32_t iteration) = nullptr;
   std::uint64_t (*first)(const Problem&, Cell) = nullptr;
   std::uint64_t (*next)(const Problem&, Cell, std::int32_t iteration, const Stencil&) = nullptr;
+  Shape shape = Shape::line;
+  Traffic traffic = Traffic::silent;  ///< silent: a cell does not depend on its neighbours
   const Kind* kind = &cells_kind;
 };
 

@@ -1,6 +1,5 @@
 #include "apps/m2m_transfer/input/graph.hpp"
 
-#include "apps/m2m_transfer/input/lists.hpp"
 #include "runtime/core/error.hpp"
 
 #include <algorithm>

@@ -1,7 +1,6 @@
 #include "apps/m2m_transfer/input/motion.hpp"
 
 #include "apps/m2m_transfer/input/graph.hpp"
-#include "apps/m2m_transfer/input/lists.hpp"
 #include "runtime/core/error.hpp"
 #include "runtime/core/number.hpp"
 

@@ -1,13 +1,12 @@
 #include "apps/m2m_transfer/input/problem.hpp"
 
-#include "apps/m2m_transfer/input/formulas.hpp"
-#include "apps/m2m_transfer/input/lists.hpp"
 #include "m2m/read_mesh.hpp"
 #include "runtime/core/error.hpp"
 #include "runtime/more/when.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace m2m_transfer {
 namespace {
@@ -92,6 +91,11 @@ Task read_meshes(const Request& request, Problem& problem) {
   for (std::size_t m = 0; m < problem.meshes.size(); ++m)
     if (m != first) tasks.push_back(read_one(problem, m));
   co_await tess::when_all(std::move(tasks));
+}
+
+/// The edge of a cube with the volume of six average tetrahedra: 1/N for kuhn:N.
+double typical_edge(const MeshSurvey& mesh) {
+  return std::cbrt(6 * mesh.volume / static_cast<double>(mesh.n_tets));
 }
 
 TransferReport report_of(const Problem& problem, const Pair& pair, const Request& request) {
@@ -191,6 +195,21 @@ std::int32_t halo_for(TransferKind kind, std::size_t mesh, const std::vector<Pai
     if (pair.target == mesh) layers = std::max(layers, target_halo_layers(kind));
   }
   return layers;
+}
+
+std::optional<double> largest_second_derivative(const std::string& field, const Aabb& domain) {
+  double side = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    side = std::max(side, domain.hi[axis] - domain.lo[axis]);
+  if (!(side > 0)) side = 1;
+  if (field == "linear") return 0;
+  // exp(-|r|²) has its largest second derivative, -2, at r = 0; r = 4/side times the position.
+  if (field == "gaussian") return 2 * 16 / (side * side);
+  // The product of three sines is the mean of four plane waves with the wave vectors k (1, ±1, ±1).
+  // Along a unit vector v their squares sum to 4 k² |v|²; the corners of a cube of extrema reach
+  // k².
+  if (field == "sin") return std::pow(2 * std::numbers::pi / side, 2);
+  return std::nullopt;
 }
 
 }  // namespace m2m_transfer

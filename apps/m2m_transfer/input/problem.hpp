@@ -10,12 +10,16 @@
 #include "m2m/partition_method.hpp"
 #include "m2m/placement.hpp"
 #include "m2m/policy.hpp"
+#include "m2m/status.hpp"
 #include "m2m/transfer_kind.hpp"
 #include "runtime/runtime.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace m2m_transfer {
@@ -98,5 +102,29 @@ void bring_targets(Problem& problem);
 /// The layers of tetrahedra that a mesh needs around its parts, as source and as target of pairs.
 [[nodiscard]] std::int32_t halo_for(TransferKind kind, std::size_t mesh,
                                     const std::vector<Pair>& pairs);
+
+/// The largest second derivative in any direction, max |D²f|, of a field of make_formula(); empty
+/// for expressions.
+[[nodiscard]] std::optional<double> largest_second_derivative(const std::string& field,
+                                                              const Aabb& domain);
+
+/// A bound of the error of linear interpolation in tetrahedra whose edges are at most `longest`:
+/// (3/16) h² max |D²f|. The error is at most R²/2 max |D²f|, where R is the radius of the smallest
+/// ball that holds the tetrahedron (Waldron 1998, theorem 3.1), and R² is at most 3/8 h² (Jung 1901).
+[[nodiscard]] constexpr double linear_bound(double longest, double second_derivative) {
+  return 3.0 / 16 * longest * longest * second_derivative;
+}
+
+/// The status of target vertices as a field for output, "status": 0 inside, 1 boundary, 2 snapped,
+/// 3 outside. Its name begins with "transfer_" if one of the fields that are written with it is a
+/// "status" too.
+[[nodiscard]] inline Field status_field(std::span<const Status> status,
+                                        std::span<const Field> others) {
+  std::vector<double> values;
+  for (const Status s : status) values.push_back(static_cast<double>(s));
+  std::string name = "status";
+  while (std::ranges::find(others, name, &Field::name) != others.end()) name.insert(0, "transfer_");
+  return {name, 1, std::move(values)};
+}
 
 }  // namespace m2m_transfer

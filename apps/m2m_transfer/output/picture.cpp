@@ -1,6 +1,5 @@
-#include "apps/m2m_transfer/output/picture.hpp"
-
 #include "apps/kit/canvas.hpp"
+#include "apps/m2m_transfer/output/transfer.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,5 @@
 #include "apps/m2m_transfer/output/rows.hpp"
 
-#include "apps/m2m_transfer/output/farthest.hpp"
 #include "apps/m2m_transfer/output/found.hpp"
 #include "m2m/transfer_kind.hpp"
 

@@ -1,14 +1,20 @@
 #include "apps/m2m_transfer/run/measure.hpp"
 
-#include "apps/m2m_transfer/input/formulas.hpp"
-#include "apps/m2m_transfer/input/status_field.hpp"
 #include "apps/m2m_transfer/run/steps.hpp"
 #include "m2m/write_pvtu.hpp"
 
+#include <algorithm>
 #include <optional>
+#include <sys/resource.h>
 
 namespace m2m_transfer {
 namespace {
+
+std::uint64_t peak_memory_bytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+}
 
 /// The fastest search and application of several.
 void keep_fastest(PhaseSeconds& best, const PhaseSeconds& other, bool first) {
@@ -57,12 +63,30 @@ Task collect(Problem& problem, const std::vector<DistributedMesh>& meshes, const
 
 }  // namespace
 
+Footprint JoinFootprints::operator()(Footprint a, const Footprint& b) const {
+  a.peak_memory_bytes += b.peak_memory_bytes;
+  a.greatest_peak_memory_bytes =
+      std::max(a.greatest_peak_memory_bytes, b.greatest_peak_memory_bytes);
+  a.bytes_sent += b.bytes_sent;
+  return a;
+}
+
+void Gauge::read(Callback<Footprint> target) {
+  const Machine& machine = tess::machine();
+  Footprint mine;
+  mine.bytes_sent = statistics().bytes_sent;
+  // All simulated processes share the memory of process 0.
+  if (machine.process_of(pe()) == machine.process() && machine.is_first_of_process(pe()))
+    mine.peak_memory_bytes = mine.greatest_peak_memory_bytes = peak_memory_bytes();
+  contribute(JoinFootprints{}, mine, std::move(target));
+}
+
 Task measure(Problem& problem, GroupProxy<Gauge> gauge, kit::Progress& progress) {
   const Footprint sent_before = co_await gauge.reduce<&Gauge::read>();
 
   progress.phase("partition");
   const Time start = now();
-  std::vector<DistributedMesh> meshes = co_await place(problem, problem.kind, problem.chares());
+  std::vector<DistributedMesh> meshes = co_await place(problem);
   const double setup = seconds_since(start);
   std::optional<GraphRun> graph;
   for (std::int32_t round = 0; round < problem.repeat; ++round) {

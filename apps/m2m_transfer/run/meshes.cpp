@@ -12,11 +12,10 @@ namespace m2m_transfer {
 namespace {
 
 /// All PEs read and cut together, and evaluate the fields where the points are.
-TaskOf<std::vector<DistributedMesh>> place_together(const Problem& problem, TransferKind kind,
-                                                    std::int32_t n_parts) {
+TaskOf<std::vector<DistributedMesh>> place_together(const Problem& problem) {
   std::vector<TaskOf<PlacedMesh>> tasks;
   for (std::size_t m = 0; m < problem.meshes.size(); ++m) {
-    const PlaceOptions options{n_parts, halo_for(kind, m, problem.pairs)};
+    const PlaceOptions options{problem.chares(), halo_for(problem.kind, m, problem.pairs)};
     std::vector<FormulaField> fields;
     for (const std::string& name : problem.field_names)
       fields.push_back({needs_values(m, problem.pairs) ? name : "0", problem.domain});
@@ -32,15 +31,13 @@ TaskOf<std::vector<DistributedMesh>> place_together(const Problem& problem, Tran
 
 }  // namespace
 
-TaskOf<std::vector<DistributedMesh>> place(const Problem& problem, TransferKind kind,
-                                           std::int32_t n_parts) {
-  if (problem.partition == PartitionMethod::curve)
-    co_return co_await place_together(problem, kind, n_parts);
+TaskOf<std::vector<DistributedMesh>> place(const Problem& problem) {
+  if (problem.partition == PartitionMethod::curve) co_return co_await place_together(problem);
   std::vector<DistributedMesh> meshes;
   co_await epoch([&] {
     for (std::size_t m = 0; m < problem.meshes.size(); ++m)
-      meshes.push_back(scatter(*problem.meshes[m].mesh, problem.meshes[m].fields, n_parts,
-                               problem.partition, halo_for(kind, m, problem.pairs)));
+      meshes.push_back(scatter(*problem.meshes[m].mesh, problem.meshes[m].fields, problem.chares(),
+                               problem.partition, halo_for(problem.kind, m, problem.pairs)));
   });
   co_return meshes;
 }

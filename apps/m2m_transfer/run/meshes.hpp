@@ -17,8 +17,7 @@ struct Gathered {
 };
 
 /// Distributes the meshes; each gets the halo that the kind needs.
-TaskOf<std::vector<DistributedMesh>> place(const Problem& problem, TransferKind kind,
-                                           std::int32_t n_parts);
+TaskOf<std::vector<DistributedMesh>> place(const Problem& problem);
 
 /// Gathers a mesh of so many vertices on this PE. All fields have one component.
 TaskOf<Gathered> gather(const DistributedMesh& mesh, std::size_t n_vertices);

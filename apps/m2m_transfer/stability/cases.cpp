@@ -1,6 +1,5 @@
 #include "apps/m2m_transfer/stability/cases.hpp"
 
-#include "apps/m2m_transfer/stability/made.hpp"
 #include "m2m/kuhn.hpp"
 
 #include <algorithm>

@@ -1,5 +1,4 @@
-#include "apps/m2m_transfer/stability/made.hpp"
-
+#include "apps/m2m_transfer/stability/cases.hpp"
 #include "m2m/kuhn.hpp"
 #include "runtime/core/hash.hpp"
 

@@ -1,7 +1,6 @@
 #include "apps/m2m_transfer/stability/rows.hpp"
 
 #include "apps/m2m_transfer/run/meshes.hpp"
-#include "apps/m2m_transfer/stability/made.hpp"
 #include "m2m/transfer.hpp"
 #include "runtime/core/error.hpp"
 #include "runtime/wire/machine/simulated.hpp"
@@ -59,21 +58,16 @@ bool has_wrong_value_outside(const OutsidePolicy& policy, double value) {
   return !same_bits(value, given != nullptr ? given->value : 0.0);
 }
 
-/// One run of all cases. Cases that are refused have no answer.
-Task run_all(const std::vector<Case>& cases, std::int32_t n_parts, const Ways& ways,
-             kit::Progress& progress, Answers& answers) {
-  for (std::size_t k = 0; k < cases.size(); ++k) {
-    progress.part(k + 1, cases.size());
-    if (!refusal(cases[k]).empty()) continue;
-    answers[k].push_back(co_await answer_of(cases[k], n_parts, ways));
-  }
-}
-
+/// A run of all cases for each number of parts. Cases that are refused have no answer.
 Task run_parts(const std::vector<Case>& cases, const std::vector<std::int32_t>& parts,
                const Ways& ways, kit::Progress& progress, Answers& answers) {
   for (const std::int32_t n_parts : parts) {
     progress.phase(n_parts == 1 ? "one part" : "several parts");
-    co_await run_all(cases, n_parts, ways, progress, answers);
+    for (std::size_t k = 0; k < cases.size(); ++k) {
+      progress.part(k + 1, cases.size());
+      if (refusal(cases[k]).empty())
+        answers[k].push_back(co_await answer_of(cases[k], n_parts, ways));
+    }
   }
 }
 

@@ -32,7 +32,7 @@ TaskOf<std::uint64_t> hash_of(const Problem& problem, const std::vector<Distribu
 Task measure_steps(Problem& problem, std::int32_t repeat, kit::Progress& progress,
                    std::vector<StepsRow>& rows) {
   progress.phase("partition");
-  std::vector<DistributedMesh> meshes = co_await place(problem, problem.kind, problem.chares());
+  std::vector<DistributedMesh> meshes = co_await place(problem);
   double warm = 0, again = 0;
   co_await run_steps(problem, meshes, 1, progress, warm);
   for (std::int32_t round = 0; round < repeat; ++round)

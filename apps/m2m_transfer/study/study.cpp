@@ -1,6 +1,5 @@
 #include "apps/m2m_transfer/study/study.hpp"
 
-#include "apps/m2m_transfer/input/lists.hpp"
 #include "m2m/kuhn.hpp"
 #include "runtime/core/error.hpp"
 

@@ -1,8 +1,7 @@
-#include "apps/particles/output/picture.hpp"
-
 #include "apps/kit/canvas.hpp"
 #include "apps/kit/contour.hpp"
 #include "apps/kit/ticks.hpp"
+#include "apps/particles/output/files.hpp"
 #include "collide/dn_field/compressed.hpp"
 
 #include <algorithm>

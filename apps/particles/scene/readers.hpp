@@ -14,8 +14,6 @@ namespace particles {
 /// A built-in shape, or triangles from an OBJ file.
 [[nodiscard]] tess::dn::Surface read_shape(const Node& node, const std::string& folder);
 
-[[nodiscard]] tess::dn::Rules read_rules(const Node& node);
-
 /// Its shape, how it stands and moves, and its field, of which the step and the rules say what it
 /// has to cover.
 [[nodiscard]] SceneObject read_object(const Node& node, const std::string& folder, double dt,

@@ -1,6 +1,5 @@
 #include "apps/particles/simulation/block.hpp"
 
-#include "apps/particles/simulation/observe.hpp"
 #include "runtime/core/cpu_clock.hpp"
 
 #include <algorithm>

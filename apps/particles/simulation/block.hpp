@@ -7,7 +7,7 @@
 // steps waits among the arrivals until the next stretch, so that it is not moved twice.
 #pragma once
 
-#include "apps/particles/simulation/flock.hpp"
+#include "apps/particles/simulation/observe.hpp"
 #include "apps/particles/simulation/station.hpp"
 #include "runtime/runtime.hpp"
 

@@ -3,7 +3,6 @@
 // processes, blocks or schedule.
 #pragma once
 
-#include "apps/particles/audit/measured.hpp"
 #include "apps/particles/options.hpp"
 #include "apps/particles/scene/scene.hpp"
 #include "apps/particles/simulation/station.hpp"

@@ -1,4 +1,4 @@
-#include "apps/particles/stability/parts.hpp"
+#include "apps/particles/stability/cases.hpp"
 
 #include <algorithm>
 
@@ -220,23 +220,14 @@ Particle flown(const Rules& rules, double step, int n_steps, std::span<const Obj
   return {particles.position(0), particles.velocity(0)};
 }
 
-void stiff_rules(Rows& rows) {
-  spring(rows);
-  drag(rows);
-  wind(rows);
-  explosion(rows);
-  surface_flow(rows);
-  bounces(rows);
-  traced_bounces(rows);
-}
-
 }  // namespace stability
 
 std::vector<kit::Case> stability_report() {
-  stability::Rows rows;
-  stability::stiff_rules(rows);
-  stability::extreme_motion(rows);
-  stability::extreme_places(rows);
+  using namespace stability;
+  Rows rows;
+  for (void (*const add)(Rows&) : {spring, drag, wind, explosion, surface_flow, bounces,
+                                   traced_bounces, extreme_motion, extreme_places})
+    add(rows);
   return rows.rows;
 }
 

@@ -1,6 +1,6 @@
 // The stability report's extreme motions: speed, spin, moving walls, corners, rest, all rules at
 // once.
-#include "apps/particles/stability/parts.hpp"
+#include "apps/particles/stability/cases.hpp"
 
 #include <algorithm>
 

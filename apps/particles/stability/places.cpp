@@ -1,6 +1,6 @@
 // The stability report's extreme places and fields: starts inside and on the surface, scales,
 // offsets, compressed and blurred fields, particles that are not finite.
-#include "apps/particles/stability/parts.hpp"
+#include "apps/particles/stability/cases.hpp"
 #include "collide/dn_field/build_field.hpp"
 #include "collide/dn_field/compressed.hpp"
 #include "collide/dn_field/look_up.hpp"

@@ -1,5 +1,5 @@
 // The workloads' answers: the same under every cut, strategy, schedule and forced migration.
-#include "apps/lb_lab/cells/cells.hpp"
+#include "apps/lb_lab/run/kind.hpp"
 #include "apps/lb_lab/workload/kernel.hpp"
 #include "apps/lb_lab/workload/patch.hpp"
 #include "tests/apps/lb_lab/on_simulated.hpp"

@@ -1,7 +1,6 @@
 // The files that a run writes: pictures and snapshots.
 #include "apps/kit/contour.hpp"
 #include "apps/particles/output/files.hpp"
-#include "apps/particles/output/picture.hpp"
 #include "tests/apps/particles/run_scene.hpp"
 #include "tests/support/scratch.hpp"
 

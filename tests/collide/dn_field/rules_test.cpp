@@ -1,7 +1,7 @@
 #include "collide/dn_field/rules.hpp"
 
 #include "apps/kit/worst.hpp"
-#include "apps/particles/stability/parts.hpp"
+#include "apps/particles/stability/cases.hpp"
 #include "collide/dn_field/build_field.hpp"
 #include "collide/dn_field/shapes.hpp"
 #include "runtime/core/error.hpp"

@@ -1,9 +1,7 @@
 // The files of --out.
 #include "apps/collide_scene/output/files.hpp"
 
-#include "apps/collide_scene/output/picture.hpp"
 #include "apps/collide_scene/output/view.hpp"
-#include "apps/collide_scene/output/vtp.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/scratch.hpp"
 

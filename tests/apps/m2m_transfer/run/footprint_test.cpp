@@ -1,5 +1,4 @@
-#include "apps/m2m_transfer/run/footprint.hpp"
-
+#include "apps/m2m_transfer/run/measure.hpp"
 #include "runtime/wire/machine/simulated.hpp"
 #include "runtime/wire/machine/threads.hpp"
 #include "tests/support/catch.hpp"

@@ -1,6 +1,5 @@
 #include "apps/m2m_transfer/stability/rows.hpp"
 
-#include "apps/m2m_transfer/stability/made.hpp"
 #include "m2m/kuhn.hpp"
 #include "runtime/wire/machine/threads.hpp"
 #include "tests/support/catch.hpp"

@@ -1,6 +1,5 @@
 // Studies of kinds, of steps and of PEs.
-#include "apps/m2m_transfer/input/formulas.hpp"
-#include "apps/m2m_transfer/study/checks.hpp"
+#include "apps/m2m_transfer/study/study.hpp"
 #include "m2m/kuhn.hpp"
 #include "tests/apps/m2m_transfer/program.hpp"
 

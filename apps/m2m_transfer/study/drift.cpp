@@ -1,9 +1,11 @@
-#include "apps/m2m_transfer/run/drift.hpp"
+#include "apps/m2m_transfer/study/drift.hpp"
 
-#include "apps/m2m_transfer/input/lists.hpp"
 #include "apps/m2m_transfer/run/steps.hpp"
 #include "runtime/core/error.hpp"
 #include "runtime/core/number.hpp"
+
+#include <algorithm>
+#include <cmath>
 
 namespace m2m_transfer {
 namespace {
@@ -27,7 +29,7 @@ DriftRow row_of(const std::string& field, const FieldNorms& norms) {
 Task run_kind(Problem& problem, const std::vector<std::int32_t>& trips, kit::Progress& progress,
               Drift& drift) {
   progress.phase("partition");
-  std::vector<DistributedMesh> meshes = co_await place(problem, problem.kind, problem.chares());
+  std::vector<DistributedMesh> meshes = co_await place(problem);
   GraphRun graph(problem, meshes, progress);
   co_await graph.search();
   const RunMesh& start = problem.meshes.front();
@@ -57,6 +59,22 @@ Task run_kind(Problem& problem, const std::vector<std::int32_t>& trips, kit::Pro
   co_await destroy(meshes);
 }
 
+/// A line per kind and field.
+Picture picture_of(const std::vector<DriftRow>& rows, const char* name, const char* quantity,
+                   double DriftRow::*value) {
+  kit::Chart chart{.title = "drift over round trips",
+                   .x_label = "round trips",
+                   .y_label = quantity,
+                   .x_log = true,
+                   .y_log = true};
+  const bool several = std::ranges::any_of(
+      rows, [&](const DriftRow& row) { return row.field != rows.front().field; });
+  for (const DriftRow& row : rows)
+    kit::add_point(chart, row.kind + (several ? ", " + row.field : ""), row.trips,
+                   std::abs(row.*value));
+  return {name, chart};
+}
+
 }  // namespace
 
 std::vector<std::int32_t> parse_trips(const std::string& text) {
@@ -80,6 +98,31 @@ Task measure_drift(Request request, const std::vector<TransferKind>& kinds,
     problem.kind = kind;
     co_await run_kind(problem, trips, progress, drift);
   }
+}
+
+const kit::Rows<DriftRow>& drift_rows() {
+  using R = const DriftRow&;
+  using kit::Json;
+  using kit::of;
+  static constexpr kit::Column<DriftRow> columns[] = {
+      {"kind", "kind", "<", of<&DriftRow::kind>},
+      {"field", "field", "<", of<&DriftRow::field>},
+      {"trips", "trips", "5", of<&DriftRow::trips>},
+      {"l2_relative", "L2", "10.4e", of<&DriftRow::l2_relative>},
+      {"linf", "Linf", "10.4e", of<&DriftRow::linf>},
+      {"l2_kept", "L2 kept", "8.5f", of<&DriftRow::l2_kept>},
+      {"integral", "integral", "16.10g", of<&DriftRow::integral>},
+      {"integral_change", "change", "9.2e", of<&DriftRow::integral_change>},
+      {"result_hash", "result", "16", [](R r) -> Json { return kit::hex(r.hash); }}};
+  static const kit::Rows<DriftRow> rows(columns);
+  return rows;
+}
+
+std::vector<Picture> pictures_of(const std::vector<DriftRow>& rows) {
+  return {
+      picture_of(rows, "drift_l2", "relative L2 difference to the start", &DriftRow::l2_relative),
+      picture_of(rows, "drift_integral", "relative change of the integral",
+                 &DriftRow::integral_change)};
 }
 
 }  // namespace m2m_transfer

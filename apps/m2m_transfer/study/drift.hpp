@@ -4,7 +4,9 @@
 #pragma once
 
 #include "apps/kit/progress.hpp"
+#include "apps/kit/rows.hpp"
 #include "apps/m2m_transfer/input/problem.hpp"
+#include "apps/m2m_transfer/output/folder.hpp"
 #include "runtime/runtime.hpp"
 
 #include <cstdint>
@@ -36,5 +38,9 @@ struct Drift {
 /// Runs all kinds one after the other. `request` has two meshes and no pairs.
 Task measure_drift(Request request, const std::vector<TransferKind>& kinds,
                    const std::vector<std::int32_t>& trips, kit::Progress& progress, Drift& drift);
+
+[[nodiscard]] const kit::Rows<DriftRow>& drift_rows();
+/// The differences and the change of the integral against the number of trips.
+[[nodiscard]] std::vector<Picture> pictures_of(const std::vector<DriftRow>& rows);
 
 }  // namespace m2m_transfer

@@ -1,4 +1,4 @@
-#include "apps/m2m_transfer/run/drift.hpp"
+#include "apps/m2m_transfer/study/drift.hpp"
 
 #include "tests/apps/m2m_transfer/program.hpp"
 
