@@ -206,15 +206,15 @@ TEST_CASE("an awaited call creates its element where the entry method's attribut
 namespace {
 
 /// Takes a proxy with its way of sending, and uses it as each proxy is used.
-class Relay : public tess::Chare<Relay> {
+class ProxyUser : public tess::Chare<ProxyUser> {
  public:
-  using Urgent = tess::With<tess::ElementProxy<Relay, tess::Index1>, tess::Priority>;
-  void use(Urgent to, tess::ArrayProxy<Relay> all) {
-    self().with(tess::Priority{3}).target<&Relay::note>()(3);
-    all.with(tess::Priority{2}).target<&Relay::note>()(2);
-    tess::create_section(all, {{0}}).with(tess::Priority{1}).broadcast<&Relay::note>(1);
-    to.send<&Relay::note>(-1);
-    to.with(tess::expedited).send<&Relay::note>(-2);
+  using Urgent = tess::With<tess::ElementProxy<ProxyUser, tess::Index1>, tess::Priority>;
+  void use(Urgent to, tess::ArrayProxy<ProxyUser> all) {
+    self().with(tess::Priority{3}).target<&ProxyUser::note>()(3);
+    all.with(tess::Priority{2}).target<&ProxyUser::note>()(2);
+    tess::create_section(all, {{0}}).with(tess::Priority{1}).broadcast<&ProxyUser::note>(1);
+    to.send<&ProxyUser::note>(-1);
+    to.with(tess::expedited).send<&ProxyUser::note>(-2);
   }
   void note(int number) { order.push_back(number); }
   [[nodiscard]] int place() { return tess::my_pe().value; }
@@ -223,10 +223,10 @@ class Relay : public tess::Chare<Relay> {
 
 class Looker : public tess::Group<Looker> {
  public:
-  void look(tess::ArrayProxy<Relay> all, tess::Callback<int> target) {
+  void look(tess::ArrayProxy<ProxyUser> all, tess::Callback<int> target) {
     contribute(tess::sum, all.ended() ? 0 : static_cast<int>(all.size()), target);
   }
-  void count(tess::ArrayProxy<Relay> all, tess::Callback<int> target) {
+  void count(tess::ArrayProxy<ProxyUser> all, tess::Callback<int> target) {
     contribute(tess::sum, static_cast<int>(all.destroyed_here().first), target);
   }
 };
@@ -242,11 +242,11 @@ TEST_CASE("a proxy with a priority is a value: sent, asked, a target", "[runtime
   tess::Setup setup{tess::make_threads_machine(1), {}};
   std::vector<int> order;
   REQUIRE(tess::run(setup, [&order]() -> tess::Task {
-            const auto all = co_await tess::create<Relay>(tess::range(1));
+            const auto all = co_await tess::create<ProxyUser>(tess::range(1));
             co_await tess::epoch(
-                [&] { all[{0}].send<&Relay::use>(all[{0}].with(tess::Priority{-1}), all); });
+                [&] { all[{0}].send<&ProxyUser::use>(all[{0}].with(tess::Priority{-1}), all); });
             order = all.local({0})->order;
-            CHECK(co_await all[{7}].with(tess::create_home).ask<&Relay::place>() == 0);
+            CHECK(co_await all[{7}].with(tess::create_home).ask<&ProxyUser::place>() == 0);
           }) == 0);
   CHECK(order == std::vector<int>{-2, -1, 1, 2, 3});
 }
@@ -255,15 +255,15 @@ TEST_CASE("an awaited creation is known on every PE, an awaited end is over on e
           "[runtime][proxy]") {
   tests::over_seeds(200, tests::two_processes, []() -> tess::Task {
     const auto lookers = tess::create<Looker>(tess::each_pe);
-    const auto all = co_await tess::create<Relay>(tess::range(5));
+    const auto all = co_await tess::create<ProxyUser>(tess::range(5));
     CHECK(co_await lookers.reduce<&Looker::look>(all) == 5 * 4);
     co_await all[{3}].destroy();
     CHECK(co_await lookers.reduce<&Looker::count>(all) == 1);
     co_await all.destroy();
     CHECK(all.ended());
     CHECK(co_await lookers.reduce<&Looker::look>(all) == 0);
-    const auto one = co_await tess::create<Relay>(tess::one);
-    CHECK(co_await one.ask<&Relay::place>() >= 0);
+    const auto one = co_await tess::create<ProxyUser>(tess::one);
+    CHECK(co_await one.ask<&ProxyUser::place>() >= 0);
     co_await one.destroy();
     const auto shelves = co_await tess::create<Shelf>(tess::each_process);
     CHECK(co_await shelves[tess::ProcessId{1}].ask<&Shelf::times>(21) == 42);
