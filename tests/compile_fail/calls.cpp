@@ -128,7 +128,7 @@ struct Cache {
   void put() {}
 };
 
-// expect: an entry method of a process group returns void
+// expect: an entry method of a process group is no coroutine
 void process_group_waits(tess::ProcessGroupProxy<Cache> caches) {
   caches.broadcast<&Cache::load>();
 }

@@ -26,7 +26,7 @@ void array_of_group() {
   tess::create<Counter>(tess::range(8));
 }
 
-// expect: a group's class derives from tess::Group; create() makes an array
+// expect: a group's class derives from tess::Group; create<C>(range) makes an array
 void group_of_chare() {
   tess::create<Plain>(tess::each_pe);
 }

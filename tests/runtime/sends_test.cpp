@@ -231,7 +231,7 @@ class Looker : public tess::Group<Looker> {
   }
 };
 
-struct Shelf {
+struct WideShelf {
   int width = 2;
   [[nodiscard]] int times(int n) const { return n * width; }
 };
@@ -265,8 +265,8 @@ TEST_CASE("an awaited creation is known on every PE, an awaited end is over on e
     const auto one = co_await tess::create<ProxyUser>(tess::one);
     CHECK(co_await one.ask<&ProxyUser::place>() >= 0);
     co_await one.destroy();
-    const auto shelves = co_await tess::create<Shelf>(tess::each_process);
-    CHECK(co_await shelves[tess::ProcessId{1}].ask<&Shelf::times>(21) == 42);
+    const auto shelves = co_await tess::create<WideShelf>(tess::each_process);
+    CHECK(co_await shelves[tess::ProcessId{1}].ask<&WideShelf::times>(21) == 42);
     shelves.destroy();
   });
 }

@@ -213,7 +213,7 @@ class Scene {
   }
   void begin() {
     burst_.array = tess::create<Demanded<Index>>(sparse);
-    crowd_ = create<Crowd<Index>>(each_pe);
+    crowd_ = tess::create<Crowd<Index>>(each_pe);
   }
   void end() { burst_.array.template broadcast<&Demanded<Index>::appear>(); }
 
