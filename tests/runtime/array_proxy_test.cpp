@@ -27,10 +27,7 @@ class Summoned : public tess::Chare<Summoned> {
     ++n_rests_;
   }
   [[nodiscard]] int n_rests() { return n_rests_; }
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(n_rests_);
-  }
+  void serialize(auto& ar) { ar(n_rests_); }
 
  private:
   int n_rests_ = 0;

@@ -28,10 +28,7 @@ class Graded : public Chare<Graded> {
     if (phase_ < n_phases) return work();
     contribute(sum, 1, target_);
   }
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(phase_, target_);
-  }
+  void serialize(auto& ar) { ar(phase_, target_); }
 
  private:
   int phase_ = 0;
@@ -116,10 +113,7 @@ namespace {
 class Bulky : public Chare<Bulky> {
  public:
   void work() { charge(std::chrono::milliseconds(100)); }
-  template <class Ar>
-  void serialize(Ar& /*ar*/) {
-    charge(std::chrono::seconds(1));
-  }
+  void serialize(auto& /*ar*/) { charge(std::chrono::seconds(1)); }
 };
 
 /// Rounds between which the elements work, all of which each round sends to the next PE. `seen`: the

@@ -113,10 +113,7 @@ class CountsSteps : public tess::Chare<CountsSteps> {
  public:
   void step(tess::Callback<int> target) { contribute(tess::sum, ++n_, std::move(target)); }
   void report(tess::Callback<int> target) { contribute(tess::sum, n_, std::move(target)); }
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(n_);
-  }
+  void serialize(auto& ar) { ar(n_); }
 
  private:
   int n_ = 0;
@@ -157,10 +154,7 @@ class MakesAtOnce : public tess::Group<MakesAtOnce> {
   }
   [[nodiscard]] int n_ticks() const { return n_ticks_; }
   void end() { tick_.cancel(); }
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(cells_);
-  }
+  void serialize(auto& ar) { ar(cells_); }
 
  private:
   tess::ArrayProxy<CountsSteps> cells_;
@@ -170,10 +164,7 @@ class MakesAtOnce : public tess::Group<MakesAtOnce> {
 
 struct Made {
   tess::GroupProxy<MakesAtOnce> makers;
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(makers);
-  }
+  void serialize(auto& ar) { ar(makers); }
 
   static tess::Task save(const std::string& folder) {
     Made state;

@@ -34,10 +34,7 @@ class Pilgrim : public tess::Chare<Pilgrim> {
     const std::unique_ptr<tess::Future<int>> answer(reinterpret_cast<tess::Future<int>*>(answer_));
     target(co_await *answer);
   }
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(answer_);
-  }
+  void serialize(auto& ar) { ar(answer_); }
 
  private:
   std::uintptr_t answer_ = 0;
@@ -115,10 +112,7 @@ class Traveller : public tess::Chare<Traveller> {
     const int pe = co_await news_;
     target(pe);
   }
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(n_asked_);
-  }
+  void serialize(auto& ar) { ar(n_asked_); }
 
  private:
   tess::Future<int> news_;

@@ -79,10 +79,7 @@ class Wanderer : public tess::Chare<Wanderer, tess::Index1> {
     array()[index()].send<&Wanderer::go>(n_moves - 1);
     migrate_to(tess::PeId{(tess::current_pe().id().value + 1) % tess::n_pes()});
   }
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(load_);
-  }
+  void serialize(auto& ar) { ar(load_); }
 
  private:
   std::vector<double> load_ = std::vector<double>(10'000);

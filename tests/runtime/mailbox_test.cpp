@@ -27,10 +27,7 @@ class Reader : public tess::Chare<Reader, tess::Index1> {
     for (int i = 0; i < 4; ++i) taken.push_back((co_await notes_.take(7)).number);
     for (int i = 0; i < 4; ++i) taken.push_back((co_await notes_.take(8)).number);
   }
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(notes_);
-  }
+  void serialize(auto& ar) { ar(notes_); }
 
  private:
   tess::Mailbox<&Note::key> notes_;

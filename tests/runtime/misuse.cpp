@@ -74,10 +74,7 @@ struct Shape {
   Shape(const Shape&) = delete;
   Shape& operator=(const Shape&) = delete;
   virtual ~Shape() = default;
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(n);
-  }
+  void serialize(auto& ar) { ar(n); }
 };
 struct Circle : Shape {
   double radius = 1;
@@ -120,8 +117,7 @@ class Block : public tess::Chare<Block, tess::Index1> {
   void report(tess::Callback<void> target) { contribute(target); }
   void draw(std::unique_ptr<Shape> /*shape*/) {}
   void move(PeId pe) { migrate_to(pe); }
-  template <class Ar>
-  void serialize(Ar& /*ar*/) {}
+  void serialize(auto& /*ar*/) {}
 };
 
 /// Moves before the result of its future is there.
@@ -132,8 +128,7 @@ class Hasty : public tess::Chare<Hasty> {
     migrate_to(PeId{1});
   }
   void use() { (void)result_.callback(); }
-  template <class Ar>
-  void serialize(Ar& /*ar*/) {}
+  void serialize(auto& /*ar*/) {}
 
  private:
   tess::Future<int> result_;
@@ -155,8 +150,7 @@ class Keeper : public tess::Chare<Keeper> {
     const int result = co_await result_;
     tess::print("the result is ", result, "\n");
   }
-  template <class Ar>
-  void serialize(Ar& /*ar*/) {}
+  void serialize(auto& /*ar*/) {}
 
  private:
   tess::Future<int> result_;
@@ -292,10 +286,7 @@ class Carrier : public tess::Chare<Carrier<Value>, tess::Index1> {
   void go() { this->migrate_to(PeId{tess::n_pes() - 1}); }
   void hear(Value /*value*/) {}
   void give(tess::Callback<Value> target) { this->contribute(tess::sum, Value{}, target); }
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(value_);
-  }
+  void serialize(auto& ar) { ar(value_); }
 
  private:
   Value value_;
@@ -341,8 +332,7 @@ class Stranger : public tess::Chare<Stranger> {
   void vote(tess::SectionProxy<Stranger> section, const tess::Callback<int>& target) {
     contribute(section, tess::sum, index().x, target);
   }
-  template <class Ar>
-  void serialize(Ar& /*ar*/) {}
+  void serialize(auto& /*ar*/) {}
 };
 
 /// Of a section with an element that never comes.

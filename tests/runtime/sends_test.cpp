@@ -81,8 +81,7 @@ class Actor : public tess::Chare<Actor> {
   }
   void look_for_other() { said.push_back(array().local({1}) == nullptr ? "gone" : "still here"); }
 
-  template <class Ar>
-  void serialize(Ar& /*ar*/) {}
+  void serialize(auto& /*ar*/) {}
 
   using EntryAttributes =
       tess::Attributes<tess::EntryMethod<&Actor::say_soon, tess::Priority{-7}>,

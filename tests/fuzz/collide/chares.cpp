@@ -67,10 +67,7 @@ class Client : public tess::Chare<Client, tess::Index1> {
   [[nodiscard]] static std::int32_t owner(std::size_t object) {
     return static_cast<std::int32_t>(object % static_cast<std::size_t>(problem->n_clients));
   }
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(round_);
-  }
+  void serialize(auto& ar) { ar(round_); }
 
  private:
   static const Objects& scene_of(std::size_t round) {

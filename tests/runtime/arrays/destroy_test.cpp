@@ -31,10 +31,7 @@ class Worker : public tess::Chare<Worker, tess::Index1> {
   }
   void hear(double value) { ballast_[0] += value; }
   void resume_from_sync() {}
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(ballast_);
-  }
+  void serialize(auto& ar) { ar(ballast_); }
 
  private:
   std::vector<double> ballast_;
@@ -168,10 +165,7 @@ class Phoenix : public tess::Chare<Phoenix, tess::Index1> {
   void burn() {}
   [[nodiscard]] int life() const { return life_; }
   void count(tess::Callback<int> target) { contribute(tess::sum, life_, target); }
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(life_, rises_);
-  }
+  void serialize(auto& ar) { ar(life_, rises_); }
 
  private:
   int life_ = 0;
@@ -289,10 +283,7 @@ class Leaving : public tess::Chare<Leaving, tess::Index1> {
     ++n_left;
   }
   void put() { notes_.put(Waiter::Note{3}); }
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(notes_);
-  }
+  void serialize(auto& ar) { ar(notes_); }
 
  private:
   tess::Mailbox<&Waiter::Note::key> notes_;

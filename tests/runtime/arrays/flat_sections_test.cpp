@@ -10,8 +10,7 @@ namespace {
 class Wanderer : public tess::Chare<Wanderer> {
  public:
   void move(tess::PeId to) { migrate_to(to); }
-  template <class Ar>
-  void serialize(Ar& /*ar*/) {}
+  void serialize(auto& /*ar*/) {}
 };
 
 /// After each multicast all members are elsewhere, so the next one needs new lists.

@@ -30,10 +30,7 @@ class Block : public tess::Chare<Block, tess::Index1> {
     contribute(tess::sum, std::move(of_pe), placement_);
   }
   [[nodiscard]] std::array<double, 3> balance_position() const { return {1.0 * index().x, 0, 0}; }
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(placement_, load_, value_);
-  }
+  void serialize(auto& ar) { ar(placement_, load_, value_); }
 
  private:
   void spin() {

@@ -11,8 +11,7 @@ using namespace tess;
 class Worker : public Chare<Worker, Index1> {
  public:
   void work() { (void)charge(std::chrono::microseconds(index().x)); }
-  template <class Ar>
-  void serialize(Ar& /*ar*/) {}
+  void serialize(auto& /*ar*/) {}
 };
 
 /// Three phases; the number of rounds.

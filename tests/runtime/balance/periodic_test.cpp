@@ -29,10 +29,7 @@ class BusyWorker : public Chare<BusyWorker> {
       contribute(sum, n_done_, done);
     }
   }
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(n_done_);
-  }
+  void serialize(auto& ar) { ar(n_done_); }
 
  private:
   int n_done_ = 0;

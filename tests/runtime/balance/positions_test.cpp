@@ -12,16 +12,14 @@ using namespace tess;
 class Nowhere : public Chare<Nowhere, Index1> {
  public:
   void work() {}
-  template <class Ar>
-  void serialize(Ar& /*ar*/) {}
+  void serialize(auto& /*ar*/) {}
 };
 
 class Somewhere : public Chare<Somewhere, Index1> {
  public:
   void work() {}
   [[nodiscard]] std::array<double, 3> balance_position() const { return {1.0 * index().x, 0, 0}; }
-  template <class Ar>
-  void serialize(Ar& /*ar*/) {}
+  void serialize(auto& /*ar*/) {}
 };
 
 /// A round of 16 elements; true once the balancer was accepted.

@@ -19,8 +19,7 @@ class Traveller : public Chare<Traveller> {
  public:
   void work() { charge(8ms); }
   void turn() { migrate_to(PeId{1 - my_pe().value}); }
-  template <class Ar>
-  void serialize(Ar& /*ar*/) {}
+  void serialize(auto& /*ar*/) {}
 };
 
 struct State {

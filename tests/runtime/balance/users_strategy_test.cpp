@@ -28,10 +28,7 @@ class Phased : public Chare<Phased> {
     if (phase_ < 4) return work();
     contribute(sum, phase_, target_);
   }
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(phase_, target_);
-  }
+  void serialize(auto& ar) { ar(phase_, target_); }
 
  private:
   int phase_ = 0;

@@ -28,10 +28,7 @@ class Brick : public tess::Chare<Brick> {
     ++n_ended;
   }
   static inline std::atomic<int> n_ended = 0;
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(weight_);
-  }
+  void serialize(auto& ar) { ar(weight_); }
 
  private:
   int weight_ = 1;

@@ -19,10 +19,7 @@ class Keeper : public tess::Chare<Keeper> {
   void keep(const tess::Callback<int>& target) { target_ = target; }
   void report() { target_(index().x); }
   void report_to(const tess::Callback<int>& target) { contribute(tess::sum, index().x, target); }
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(target_);
-  }
+  void serialize(auto& ar) { ar(target_); }
 
  private:
   tess::Callback<int> target_;

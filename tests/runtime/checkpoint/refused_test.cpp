@@ -26,10 +26,7 @@ class Cell : public tess::Chare<Cell> {
   }
   void sync() { at_sync(); }
   void resume_from_sync() {}
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(sum_);
-  }
+  void serialize(auto& ar) { ar(sum_); }
 
  private:
   int sum_ = 0;
@@ -50,10 +47,7 @@ class Table : public tess::Group<Table> {
  public:
   void put(int value) { value_ = value; }
   void sum(tess::Callback<int> target) { contribute(tess::sum, value_, target); }
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(value_);
-  }
+  void serialize(auto& ar) { ar(value_); }
 
  private:
   int value_ = 7;
@@ -161,18 +155,14 @@ bool is_later_version = false;
 struct Growing {
   int first = 1;
   int later = 2;
-  template <class Ar>
-  void serialize(Ar& ar) {
+  void serialize(auto& ar) {
     ar(first);
     if (is_later_version) ar(later);
   }
 };
 class Grown : public tess::Chare<Grown> {
  public:
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(members_);
-  }
+  void serialize(auto& ar) { ar(members_); }
 
  private:
   Growing members_;
@@ -334,10 +324,7 @@ class Beat : public tess::Chare<Beat> {
     target_ = target;
     phase();
   }
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(n_phases_, target_);
-  }
+  void serialize(auto& ar) { ar(n_phases_, target_); }
 
  private:
   int n_phases_ = 0;
@@ -399,8 +386,7 @@ class Clay : public tess::Chare<Clay> {
  public:
   void form() { ++n_; }
   [[nodiscard]] int formed() const { return n_; }
-  template <class Ar>
-  void serialize(Ar& ar) {
+  void serialize(auto& ar) {
     if (index().x == 3) may_throw(by_clay, ar);
     ar(n_);
   }
@@ -411,8 +397,7 @@ class Clay : public tess::Chare<Clay> {
 
 struct Pottery {
   tess::ArrayProxy<Clay> clay;
-  template <class Ar>
-  void serialize(Ar& ar) {
+  void serialize(auto& ar) {
     may_throw(by_state, ar);
     ar(clay);
   }

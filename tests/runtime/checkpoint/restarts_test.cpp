@@ -22,8 +22,7 @@ using tess::test::completes;
 class Leaf : public tess::Chare<Leaf> {
  public:
   void count(const tess::Callback<int>& target) { contribute(tess::sum, 1, target); }
-  template <class Ar>
-  void serialize(Ar& /*ar*/) {}
+  void serialize(auto& /*ar*/) {}
 };
 
 /// It makes arrays and sections of its array, and keeps them.
@@ -43,10 +42,7 @@ class Maker : public tess::Chare<Maker> {
   void count(std::size_t array, const tess::Callback<int>& target) {
     leaves_.at(array).broadcast<&Leaf::count>(target);
   }
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(sections_, leaves_, hits_);
-  }
+  void serialize(auto& ar) { ar(sections_, leaves_, hits_); }
 
  private:
   std::vector<tess::SectionProxy<Maker>> sections_;
@@ -142,8 +138,7 @@ namespace {
 class Desk : public tess::Chare<Desk> {
  public:
   [[nodiscard]] int pe() const { return tess::my_pe().value; }
-  template <class Ar>
-  void serialize(Ar& /*ar*/) {}
+  void serialize(auto& /*ar*/) {}
 };
 
 struct Desks {

@@ -33,10 +33,7 @@ class Singer : public tess::Chare<Singer> {
   }
   [[nodiscard]] int n_sung() const { return n_sung_; }
 
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(n_sung_);
-  }
+  void serialize(auto& ar) { ar(n_sung_); }
 
  private:
   int n_sung_ = 0;

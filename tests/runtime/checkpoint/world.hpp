@@ -55,10 +55,7 @@ class Atom : public tess::Chare<Atom, tess::Index2> {
   };
   void sum_row(Row row) { contribute(row.section, tess::in_order(tess::sum), value_, row.sum); }
 
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(value_, pushes_);
-  }
+  void serialize(auto& ar) { ar(value_, pushes_); }
 
  private:
   double value_ = 1;
@@ -74,10 +71,7 @@ class Word : public tess::Chare<Word, std::string> {
     letters_ += 'x';
     contribute(tess::sum, static_cast<std::int64_t>(letters_.size()), sum);
   }
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(letters_);
-  }
+  void serialize(auto& ar) { ar(letters_); }
 
  private:
   std::string letters_;
@@ -115,10 +109,7 @@ class Census : public tess::Chare<Census> {
     for (const std::int64_t n : seen_) sum += n;
     contribute(tess::sum, sum, target);
   }
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(seen_);
-  }
+  void serialize(auto& ar) { ar(seen_); }
 
  private:
   std::vector<std::int64_t> seen_;
@@ -142,10 +133,7 @@ struct State {
     std::memcpy(&bits, &value, sizeof bits);
     log = tess::mix(log ^ bits);
   }
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(step, log, atoms, words, tallies, census, row, gone, ended);
-  }
+  void serialize(auto& ar) { ar(step, log, atoms, words, tallies, census, row, gone, ended); }
 };
 
 inline std::string word(std::int32_t step) {

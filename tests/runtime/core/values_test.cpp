@@ -36,10 +36,7 @@ class Symmetric {
  public:
   Symmetric() = default;
   explicit Symmetric(int value) : value_(value), text_("value") {}
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(value_, text_);
-  }
+  void serialize(auto& ar) { ar(value_, text_); }
   friend bool operator==(const Symmetric&, const Symmetric&) = default;
 
  private:
@@ -59,8 +56,7 @@ struct Path : std::vector<Plain> {};
 /// Writes nothing.
 struct Bare {
   int cache = 0;
-  template <class Ar>
-  void serialize(Ar& /*ar*/) {}
+  void serialize(auto& /*ar*/) {}
   friend auto operator<=>(const Bare&, const Bare&) = default;
 };
 /// Members that are arrays of C.
@@ -99,10 +95,7 @@ void serialize(Ar& ar, Foreign& foreign) {
 /// Serialises what derives from it.
 template <class Derived>
 struct ByItsFields {
-  template <class Ar>
-  void serialize(Ar& ar) {
-    static_cast<Derived&>(*this).fields(ar);
-  }
+  void serialize(auto& ar) { static_cast<Derived&>(*this).fields(ar); }
 };
 class Fielded : public ByItsFields<Fielded> {
  public:
@@ -128,10 +121,7 @@ struct Shape {
   Shape() = default;
   Shape(const Shape&) = default;
   virtual ~Shape() = default;
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(n);
-  }
+  void serialize(auto& ar) { ar(n); }
 };
 
 template <class T>
@@ -341,10 +331,7 @@ struct Forgets {
 struct Remembers {
   std::int32_t kept = 1;
   std::vector<std::string> names;
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(kept, names);
-  }
+  void serialize(auto& ar) { ar(kept, names); }
 };
 
 }  // namespace
@@ -379,8 +366,7 @@ namespace {
 /// Passes a temporary to the archive, which is destroyed when serialize() returns.
 struct Doubles {
   std::vector<double> values;
-  template <class Ar>
-  void serialize(Ar& ar) {
+  void serialize(auto& ar) {
     std::vector<double> copy = values;
     ar(copy);
     values = copy;

@@ -39,10 +39,7 @@ class Field : public tess::Chare<Field, tess::Index2> {
   void add(int more) { value_ += more; }
   void total(tess::Callback<int> target) { contribute(tess::sum, value_, target); }
   [[nodiscard]] int now_on() { return tess::my_pe().value; }
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(value_, made_on_);
-  }
+  void serialize(auto& ar) { ar(value_, made_on_); }
 
  private:
   int value_ = 0;
@@ -53,10 +50,7 @@ class Name : public tess::Chare<Name, std::string> {
  public:
   void note() { made_on_ = tess::my_pe().value; }
   [[nodiscard]] int made_on() { return made_on_; }
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(made_on_);
-  }
+  void serialize(auto& ar) { ar(made_on_); }
 
  private:
   int made_on_ = tess::my_pe().value;
@@ -66,8 +60,7 @@ class Dot : public tess::Chare<Dot> {
  public:
   void note() {}
   [[nodiscard]] int now_on() { return tess::my_pe().value; }
-  template <class Ar>
-  void serialize(Ar& /*ar*/) {}
+  void serialize(auto& /*ar*/) {}
 };
 
 struct Placed {

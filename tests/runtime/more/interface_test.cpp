@@ -56,10 +56,7 @@ class Savings : public tess::Chare<Savings>, public Account {
   void add_up(const tess::Callback<std::int64_t>& target) override {
     contribute(tess::sum, balance(), target);
   }
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(sum_, keys_);
-  }
+  void serialize(auto& ar) { ar(sum_, keys_); }
 
  private:
   std::int64_t sum_ = 0;
@@ -87,10 +84,7 @@ class Debt : public Account, public tess::Chare<Debt> {
   void add_up(const tess::Callback<std::int64_t>& target) override {
     contribute(tess::sum, balance(), target);
   }
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(parts_);
-  }
+  void serialize(auto& ar) { ar(parts_); }
 
  private:
   std::vector<std::int64_t> parts_;

@@ -97,10 +97,7 @@ class Watched : public tess::Chare<Watched, tess::Index1> {
   void sync() { at_sync(); }
   void resume_from_sync() { ++n_resumed_; }
 
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(words_, n_resumed_);
-  }
+  void serialize(auto& ar) { ar(words_, n_resumed_); }
 
  private:
   tess::Mailbox<&Word::key> words_;

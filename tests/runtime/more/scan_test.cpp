@@ -90,10 +90,7 @@ class Tile : public tess::Chare<Tile, tess::Index2> {
     contribute(tess::sum, std::int64_t{n_right_}, target);
   }
 
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(n_right_);
-  }
+  void serialize(auto& ar) { ar(n_right_); }
 
  private:
   [[nodiscard]] std::int64_t rank() const { return tess::rank_in(array().range(), index()); }
@@ -123,10 +120,7 @@ class Entry : public tess::Chare<Entry, std::string> {
     contribute(tess::inclusive_scan(tess::concatenate), index(), self().target<&Entry::take>());
   }
   void take(std::string names) { contribute(tess::gather, names, target_); }
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(target_);
-  }
+  void serialize(auto& ar) { ar(target_); }
 
  private:
   tess::Callback<std::vector<std::pair<std::string, std::string>>> target_;
@@ -163,10 +157,7 @@ class Cell : public tess::Chare<Cell, tess::Index2> {
     n_before_ = static_cast<int>(before.size());
   }
   void count(tess::Callback<int> target) { contribute(tess::sum, n_before_, target); }
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(n_before_);
-  }
+  void serialize(auto& ar) { ar(n_before_); }
 
  private:
   int n_before_ = 0;
@@ -243,8 +234,7 @@ class Leaf : public tess::Chare<Leaf> {
     contribute(tess::inclusive_scan(tess::sum), index().x, self().target<&Leaf::take>());
     contribute(tess::sum, 1, array().target<&Leaf::take>());
   }
-  template <class Ar>
-  void serialize(Ar& /*ar*/) {}
+  void serialize(auto& /*ar*/) {}
 };
 
 tess::Task contribute_after_the_end(bool& over) {

@@ -39,8 +39,7 @@ class Cell : public tess::Chare<Cell> {
                request.mean);
     contribute(request.section, tess::gather, index().x * index().x, request.squares);
   }
-  template <class Ar>
-  void serialize(Ar& /*ar*/) {}
+  void serialize(auto& /*ar*/) {}
 };
 
 tess::Task reduce() {
@@ -69,8 +68,7 @@ class Rider : public tess::Chare<Rider> {
  public:
   void hear() {}
   void ride_on() { migrate_to(tess::PeId{(tess::my_pe().value + 3) % tess::n_pes()}); }
-  template <class Ar>
-  void serialize(Ar& /*ar*/) {}
+  void serialize(auto& /*ar*/) {}
 };
 class CallCounter : public tess::Group<CallCounter> {
  public:
@@ -114,10 +112,7 @@ class Pusher : public tess::Chare<Pusher> {
     contribute(tess::in_order(tess::concatenate), std::vector<int>{n_heard_}, target);
   }
   using EntryAttributes = tess::Attributes<tess::EntryMethod<&Pusher::go, tess::inline_when_local>>;
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(n_heard_);
-  }
+  void serialize(auto& ar) { ar(n_heard_); }
 
  private:
   int n_heard_ = 0;

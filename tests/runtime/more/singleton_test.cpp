@@ -33,10 +33,7 @@ class Desk : public tess::Chare<Desk> {
     return number;
   }
   [[nodiscard]] std::vector<int> order() const { return order_; }
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(order_);
-  }
+  void serialize(auto& ar) { ar(order_); }
 
  private:
   std::vector<int> order_;
@@ -72,10 +69,7 @@ class Single : public tess::Chare<Single> {
     target(std::pair(count_, tess::my_pe().value));
   }
 
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(count_);
-  }
+  void serialize(auto& ar) { ar(count_); }
 
  private:
   int count_ = 0;

@@ -54,10 +54,7 @@ class Clerk : public tess::Chare<Clerk> {
     const int left = co_await there;
     target(10 * static_cast<int>(notes_.size()) + left);
   }
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(n_filed_, papers_, notes_);
-  }
+  void serialize(auto& ar) { ar(n_filed_, papers_, notes_); }
 
  private:
   int n_filed_ = 0;

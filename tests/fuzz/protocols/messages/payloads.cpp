@@ -31,8 +31,7 @@ std::vector<double> numbers(std::uint64_t seed) {
 struct Folded {
   std::vector<double> values;
   friend bool operator==(const Folded&, const Folded&) = default;
-  template <class Ar>
-  void serialize(Ar& ar) {
+  void serialize(auto& ar) {
     std::vector<double> doubled(values.size());
     for (std::size_t i = 0; i < values.size(); ++i) doubled[i] = 2 * values[i];
     ar(doubled);

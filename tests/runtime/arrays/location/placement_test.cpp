@@ -56,10 +56,7 @@ class Tally : public tess::Chare<Tally<Index>, Index> {
     this->contribute(tess::concatenate, Counts{{tess::index_text(this->index()), n_}},
                      std::move(target));
   }
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(n_);
-  }
+  void serialize(auto& ar) { ar(n_); }
 
  private:
   int n_ = 0;

@@ -20,10 +20,7 @@ class Heavy : public tess::Chare<Heavy, tess::Index1> {
   void leave(tess::PeId to) { migrate_to(to); }
   void touch() { ++n_touches_; }
   void count(tess::Callback<std::int64_t> done) { done(n_touches_); }
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(n_touches_, state_);
-  }
+  void serialize(auto& ar) { ar(n_touches_, state_); }
 
  private:
   std::int64_t n_touches_ = 0;

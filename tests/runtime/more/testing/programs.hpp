@@ -20,10 +20,7 @@ class Register : public Chare<Register, Index1> {
     if (v.version > kept_.version) kept_ = v;
   }
   void read(Callback<int> target) { target(kept_.value); }
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(kept_.version, kept_.value);
-  }
+  void serialize(auto& ar) { ar(kept_.version, kept_.value); }
 
  private:
   Versioned kept_;
@@ -60,8 +57,7 @@ class Reporter : public Chare<Reporter, Index1> {
   void collect(int x) { order_.push_back(x); }
   void give(Callback<std::vector<int>> target) { target(order_); }
   void count(Callback<int> target) { contribute(sum, n_calls_, std::move(target)); }
-  template <class Ar>
-  void serialize(Ar& ar) {
+  void serialize(auto& ar) {
     ar(order_);  // planted: n_calls_ is forgotten
   }
 
@@ -98,10 +94,7 @@ class Holder : public Chare<Holder, Index1> {
       if (Holder* other = array().local({x}); other != nullptr && x != index().x) held_ = other;
   }
   void use() { TESS_CHECK(held_ == nullptr || is_here(held_), "a neighbour has left"); }
-  template <class Ar>
-  void serialize(Ar& /*ar*/) {
-    held_ = nullptr;
-  }
+  void serialize(auto& /*ar*/) { held_ = nullptr; }
 
  private:
   [[nodiscard]] bool is_here(const Holder* one) const {
@@ -124,8 +117,7 @@ inline Task hold(bool& done) {
 class Spinner : public Chare<Spinner, Index1> {
  public:
   void spin() { array()[index()].send<&Spinner::spin>(); }
-  template <class Ar>
-  void serialize(Ar& /*ar*/) {}
+  void serialize(auto& /*ar*/) {}
 };
 
 }  // namespace tess::test::planted

@@ -70,10 +70,7 @@ class Partner : public tess::Chare<Partner, tess::Index2> {
   [[nodiscard]] std::string describe_state() const {
     return step_ == 0 ? "" : tess::text("at step ", step_);
   }
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(step_);
-  }
+  void serialize(auto& ar) { ar(step_); }
 
  private:
   int step_ = 0;
@@ -108,8 +105,7 @@ class Relay : public tess::Chare<Relay, tess::Index1> {
     if (n > 0)
       array()[{(index().x + 1) % static_cast<int>(array().size())}].send<&Relay::pass>(n - 1);
   }
-  template <class Ar>
-  void serialize(Ar& /*ar*/) {}
+  void serialize(auto& /*ar*/) {}
 };
 
 }  // namespace

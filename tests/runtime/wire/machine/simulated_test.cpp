@@ -14,8 +14,7 @@ namespace {
 class Walker : public tess::Chare<Walker, tess::Index1> {
  public:
   void walk(std::uint64_t seed);
-  template <class Ar>
-  void serialize(Ar& /*ar*/) {}
+  void serialize(auto& /*ar*/) {}
 };
 std::vector<std::uint64_t> trace;  // one thread runs all simulated PEs
 
