@@ -18,8 +18,7 @@ struct Heard {
   std::vector<int> ended{};                               // indices
 
   void add(int index, const std::vector<int>& met) {
-    const std::lock_guard lock(oracle);
-    lists.emplace_back(index, met);
+    locked([&] { lists.emplace_back(index, met); });
   }
 };
 Heard* heard = nullptr;

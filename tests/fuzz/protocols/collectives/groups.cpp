@@ -63,8 +63,7 @@ class Member : public Group<Member> {
 class Second : public Group<Second> {
  public:
   void call() {
-    const std::lock_guard lock(oracle);
-    ++group_record->n_made;
+    locked([&] { ++group_record->n_made; });
   }
 };
 

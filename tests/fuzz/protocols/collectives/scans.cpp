@@ -44,8 +44,7 @@ struct ScanRecord {
 ScanRecord* scan_record = nullptr;
 
 void note(List result) {
-  const std::lock_guard lock(oracle);
-  scan_record->results.push_back(std::move(result));
+  locked([&] { scan_record->results.push_back(std::move(result)); });
 }
 
 struct Step {

@@ -18,8 +18,9 @@ struct ExitRecord {
 
   /// The program runs on a PE.
   void runs(PeId pe) {
-    const std::lock_guard lock(oracle);
-    expect(!exited[static_cast<std::size_t>(pe.value)], "code runs after exit() on ", pe);
+    locked([&] {
+      expect(!exited[static_cast<std::size_t>(pe.value)], "code runs after exit() on ", pe);
+    });
   }
   void exit_here(PeId pe, int code) {
     {

@@ -66,8 +66,7 @@ class Life : public Chare<Life, Index2> {
 class Collector : public Group<Collector> {
  public:
   void collected(std::int64_t n) {
-    const std::lock_guard lock(oracle);
-    lives_of_case->n_collected += n;
+    locked([&] { lives_of_case->n_collected += n; });
   }
 };
 GroupProxy<Collector> collector_of_case;

@@ -14,8 +14,7 @@ struct Deliveries {
   std::vector<int> alive;
 
   void count(std::vector<int>& of, int number) {
-    const std::lock_guard lock(oracle);
-    ++of.at(static_cast<std::size_t>(number));
+    locked([&] { ++of.at(static_cast<std::size_t>(number)); });
   }
   void check_each_once() {
     for (std::size_t i = 0; i < delivered.size(); ++i)

@@ -63,8 +63,7 @@ class Target : public Chare<Target<Mode>, Index2> {
     ++lives_record->delivered[static_cast<std::size_t>(token)];
   }
   void appear() {
-    const std::lock_guard lock(oracle);
-    ++lives_record->found[at()];
+    locked([&] { ++lives_record->found[at()]; });
   }
 
   void serialize(auto& ar) { ar(n_taken_); }
@@ -72,8 +71,7 @@ class Target : public Chare<Target<Mode>, Index2> {
  private:
   [[nodiscard]] std::size_t at() const { return static_cast<std::size_t>(this->index().x); }
   void begin() {
-    const std::lock_guard lock(oracle);
-    expect(++lives_record->alive[at()] == 1, "index ", at(), " has two elements");
+    locked([&] { expect(++lives_record->alive[at()] == 1, "index ", at(), " has two elements"); });
   }
 
   int n_taken_ = 0;
@@ -147,8 +145,7 @@ class Agent : public Group<Agent<Mode>> {
     return static_cast<int>(lives_record->delivered.size()) - 1;
   }
   static void count_destruction() {
-    const std::lock_guard lock(oracle);
-    ++lives_record->n_sent;
+    locked([&] { ++lives_record->n_sent; });
   }
 };
 

@@ -76,10 +76,9 @@ class EndingTarget : public Chare<EndingTarget, Index1> {
   Task wait(Chain chain);
   void give(GroupProxy<Operator> operators);
   void sync() {
-    {
-      const std::lock_guard lock(oracle);
+    locked([&] {
       if (ends_record->periodic.contains(array().id())) return;
-    }
+    });
     if (!waits_) at_sync();
     waits_ = true;
   }
@@ -89,8 +88,7 @@ class EndingTarget : public Chare<EndingTarget, Index1> {
 
  private:
   void count(int n) const {
-    const std::lock_guard lock(oracle);
-    ends_record->alive[array().id()] += n;
+    locked([&] { ends_record->alive[array().id()] += n; });
   }
 
   int mark_ = 4711;
@@ -121,8 +119,7 @@ class Operator : public Group<Operator> {
     expect(targets.ended(), "the epoch of the end is done, but ", pe(), " still has the array");
   }
   void count_collections() {
-    const std::lock_guard lock(oracle);
-    ends_record->n_collections[pe()] = tess::n_collections();
+    locked([&] { ends_record->n_collections[pe()] = tess::n_collections(); });
   }
 };
 

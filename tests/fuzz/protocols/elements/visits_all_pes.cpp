@@ -32,8 +32,7 @@ class Visitor : public Chare<Visitor, Index3> {
     array()[index()].send<&Visitor::visit>(n_stops + 1);
   }
   void note(int token) {
-    const std::lock_guard lock(oracle);
-    ++visits_record->delivered[static_cast<std::size_t>(token)];
+    locked([&] { ++visits_record->delivered[static_cast<std::size_t>(token)]; });
   }
   void serialize(auto& ar) { ar(seen_); }
 
