@@ -10,6 +10,7 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/n_seeds.hpp"
 #include "tests/support/reported_pairs.hpp"
+#include "tests/support/run.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -57,8 +58,7 @@ std::vector<Item> boxes_of(const Scene& scene, std::int32_t client) {
   return items;
 }
 
-using test::in_order;
-using test::Reports;
+using test::in_order, test::Reports;
 
 Reports oracle(const Scene& scene, PairRules rules, std::optional<ModelId> only) {
   std::vector<Item> all;
@@ -150,8 +150,7 @@ struct Problem {
   ColliderOptions options;
   std::optional<ModelId> only;
   std::vector<Reports> rounds;  ///< the reports of each collision
-  std::int64_t n_refused = 0, n_left_out = 0;
-  std::int64_t n_sent_of_one_model = -1, n_sent_of_two_models = -1;
+  std::int64_t n_refused = 0, n_left_out = 0, n_sent_of_one_model = -1, n_sent_of_two_models = -1;
   GridCounts grid;
   std::string error;
   std::size_t n_left = 0;  ///< collections on PE 0 after all are destroyed
@@ -293,11 +292,8 @@ Task collide_refused(Problem& problem) {
 
 template <class Program>
 int run_with(const std::string& option, const Program& program) {
-  std::string name = "test", argument = option;
-  std::array<char*, 3> argv{name.data(), argument.data(), nullptr};
-  int argc = 2;
-  Setup setup = take_options(argc, argv.data());
-  return run(setup, [&program]() -> Task { return program(); });
+  Setup setup = tests::setup_of(option);
+  return run(setup, [&program] { return program(); });
 }
 int run_with(const std::string& option, Problem& problem, Task (*program)(Problem&)) {
   return run_with(option, [&]() { return program(problem); });
@@ -356,7 +352,7 @@ void on_many_schedules(std::uint64_t n_seeds, Task (*program)(Problem&),
                                 .seed = seed,
                                 .migration = 0.1};
     Problem problem = problem_of(seed);
-    machine.run([&]() -> Task { return program(problem); }).require_success();
+    machine.run([&] { return program(problem); }).require_success();
     judge(std::move(problem));
   });
 }
@@ -407,7 +403,7 @@ TEST_CASE("objects are submitted in the epoch that creates the collider", "[coll
     problem.options.slack = seed % 3 == 0 ? 0.1 : 0;
     const test::Machine machine{
         .pes = 4, .per_process = seed % 2 == 0 ? 1 : 0, .seed = seed, .migration = 0.1};
-    machine.run([&]() -> Task { return collide_early(problem); }).require_success();
+    machine.run([&] { return collide_early(problem); }).require_success();
     REQUIRE((problem.rounds.front() == oracle(problem.scene, problem.options.rules, {})));
     REQUIRE_FALSE(problem.rounds.front().empty());
   });
@@ -453,7 +449,7 @@ TEST_CASE("voxels too small for 32-bit cells are refused, and the collider goes 
     problem.options.voxel_size = {1e-10, 1e-10, 1e-10};
     CAPTURE(option);
     REQUIRE(run_with(option, problem, &collide_refused) == 0);
-    REQUIRE_THAT(problem.error, Catch::Contains("has no 32-bit cell at voxel size 1e-10"));
+    REQUIRE_THAT(problem.error, Contains("has no 32-bit cell at voxel size 1e-10"));
     REQUIRE(problem.rounds.front().empty());
   }
 }

@@ -2,9 +2,9 @@
 // little.
 #include "collide/collider.hpp"
 #include "runtime/more/scoped.hpp"
-#include "runtime/wire/machine/threads.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/resident.hpp"
+#include "tests/support/run.hpp"
 
 #include <sys/resource.h>
 #include <vector>
@@ -83,8 +83,7 @@ Task collide_often(tess::test::Growth& growth, std::uint64_t& n_pairs) {
 TEST_CASE("colliders in a loop leave memory flat", "[collide]") {
   tess::test::Growth growth(8000);
   std::uint64_t n_pairs = 0;
-  Setup setup{make_threads_machine(2), {}};
-  REQUIRE(run(setup, [&]() -> Task { return collide_often(growth, n_pairs); }) == 0);
+  REQUIRE(tests::run_threads(2, [&] { return collide_often(growth, n_pairs); }).exit_code == 0);
   CHECK(n_pairs == 8000 * 2 * (n_clients - 1));  // both owners receive each pair
   INFO("grows by " << growth.bytes() << " bytes from round 2000 to 8000");
   REQUIRE(growth.bytes() >= 0);
@@ -95,8 +94,7 @@ TEST_CASE("the pairs of 20 000 equal boxes, 1.6 GB, take less than 64 MiB", "[co
   constexpr std::uint64_t n = 20'000;
   const std::int64_t before = peak_bytes();
   std::uint64_t n_pairs = 0;
-  Setup setup{make_threads_machine(2), {}};
-  REQUIRE(run(setup, [&]() -> Task { return collide_crowd(n, n_pairs); }) == 0);
+  REQUIRE(tests::run_threads(2, [&] { return collide_crowd(n, n_pairs); }).exit_code == 0);
   CHECK(n_pairs == n * (n - 1) / 2);
   CHECK(peak_bytes() - before < 64 << 20);
 }

@@ -93,7 +93,7 @@ TEST_CASE("a report is destroyed once that is written in the expression that awa
           "[collide][owner]") {
   const std::vector<std::byte> name(100, std::byte{7});
   const Callback<Hits> call(long_kind, name);
-  test::Machine{.pes = 1}.run([&]() -> Task { return collide_nothing(call); }).require_success();
+  test::Machine{.pes = 1}.run([&] { return collide_nothing(call); }).require_success();
   CHECK(std::ranges::equal(call.where(), name));
 }
 
@@ -101,10 +101,10 @@ TEST_CASE("owners may be elements of arrays of two and three dimensions, and mem
           "[collide][parallel]") {
   std::int64_t n_received = 0;
   const test::Machine machine{.pes = 3, .seed = 5};
-  machine.run([&]() -> Task { return report_to_all(n_received); }).require_success();
+  machine.run([&] { return report_to_all(n_received); }).require_success();
   REQUIRE(n_received == 2 * 3);
-  REQUIRE_THROWS_WITH(owner_of(Index3{0, 1 << 20, 0}), Catch::Contains("more than 21 bits"));
-  REQUIRE_THROWS_WITH(owner_of(Index2{0, 1 << 30}), Catch::Contains("more than 31 bits"));
+  REQUIRE_THROWS_WITH(owner_of(Index3{0, 1 << 20, 0}), Contains("more than 21 bits"));
+  REQUIRE_THROWS_WITH(owner_of(Index2{0, 1 << 30}), Contains("more than 31 bits"));
 }
 
 TEST_CASE("an owner of another array is refused with its index and the class of the receivers",
@@ -125,10 +125,10 @@ TEST_CASE("an owner of another array is refused with its index and the class of 
   for (const OwnerId wrong : {owner_of(Index2{0, 1}), owner_of(Index3{0, 0, 1})}) {
     const std::string said = report(wrong);
     CAPTURE(said);
-    CHECK(said.find("report_to() ") != std::string::npos);
-    CHECK(said.find("Counter<") != std::string::npos);
-    CHECK(said.find("the owner " + owner_text(wrong) +
-                    " is no element of an array of 1 dimension") != std::string::npos);
+    CHECK_THAT(said, Contains("report_to() "));
+    CHECK_THAT(said, Contains("Counter<"));
+    CHECK_THAT(said, Contains("the owner " + owner_text(wrong) +
+                              " is no element of an array of 1 dimension"));
   }
   CHECK(owner_text(owner_of(Index2{-3, 4})) == "[-3,4]");
   CHECK(owner_text(owner_of(Index3{-3, 4, 5})) == "[-3,4,5]");

@@ -208,19 +208,19 @@ TEST_CASE("only corners of the triangles that were named are tested, each once",
   const std::vector<std::uint32_t> lower{0, 1};  // the face x = -1
   CHECK(penetrating_points(a, lower, b).empty());
   const std::vector<std::uint32_t> beyond{0, 12};
-  CHECK_THROWS_WITH(penetrating_points(a, beyond, b), Catch::Contains("at position 12 of 12"));
+  CHECK_THROWS_WITH(penetrating_points(a, beyond, b), Contains("at position 12 of 12"));
 }
 
 TEST_CASE("an open surface is refused, and the edge is named", "[collide][queries]") {
   auto triangles = box_surface({0, 0, 0}, {1, 1, 1});
   triangles.pop_back();
-  CHECK_THROWS_WITH(model_of(triangles), Catch::Contains("edge of triangle"));
+  CHECK_THROWS_WITH(model_of(triangles), Contains("edge of triangle"));
   triangles = box_surface({0, 0, 0}, {1, 1, 1});
   std::swap(triangles[4].corners[0], triangles[4].corners[1]);
   CHECK_THROWS_AS(model_of(triangles), tess::Error);
   triangles = box_surface({0, 0, 0}, {1, 1, 1});
   triangles[7].corners[1][2] = std::nan("");
-  CHECK_THROWS_WITH(model_of(triangles), Catch::Contains("object 7"));
+  CHECK_THROWS_WITH(model_of(triangles), Contains("object 7"));
   CHECK_FALSE(model_of({}).penetration({0, 0, 0}));
   CHECK_THROWS_AS(model_of({}).penetration({std::nan(""), 0, 0}), tess::Error);
 }

@@ -230,7 +230,7 @@ TEST_CASE("bad objects and queries are refused, with the position", "[collide][q
   for (const double bad : {nan, HUGE_VAL, -HUGE_VAL}) {
     triangles[3].corners[2][1] = bad;
     REQUIRE_THROWS_WITH(Index<Triangle>{std::span<const Triangle>(triangles)},
-                        Catch::Contains("object 3"));
+                        Contains("object 3"));
     CHECK_THROWS_AS(index.within({0, bad, 0}, 1), tess::Error);
     CHECK_THROWS_AS(index.within({0, 0, 0}, bad), tess::Error);
     CHECK_THROWS_AS(index.nearest({bad, 0, 0}, 1), tess::Error);
@@ -238,7 +238,7 @@ TEST_CASE("bad objects and queries are refused, with the position", "[collide][q
     CHECK_THROWS_AS(index.all_hits({{0, 0, 0}, {1, bad, 0}}), tess::Error);
   }
   CHECK_THROWS_AS(index.within({0, 0, 0}, -1), tess::Error);
-  CHECK_THROWS_WITH(index.first_hit({{0, 0, 0}, {0, 0, 0}}), Catch::Contains("direction"));
+  CHECK_THROWS_WITH(index.first_hit({{0, 0, 0}, {0, 0, 0}}), Contains("direction"));
   const std::vector<Sphere> balls{{{0, 0, 0}, 1}, {{0, 0, 0}, -1}};
-  CHECK_THROWS_WITH(Index<Sphere>{std::span<const Sphere>(balls)}, Catch::Contains("object 1"));
+  CHECK_THROWS_WITH(Index<Sphere>{std::span<const Sphere>(balls)}, Contains("object 1"));
 }

@@ -96,10 +96,9 @@ TEST_CASE("rays meet triangles and boxes as rational numbers say, at edges and c
     const int size = 3 + i % 4;
     Triangle t{random.points<3>(size)};
     Ray ray{random.point(size), random.point(size)};
-    if (i % 3 == 0) {  // through a corner or the middle of an edge
+    if (i % 3 == 0)  // through a corner or the middle of an edge
       for (std::size_t k = 0; k < 3; ++k)
         ray.direction[k] = t.corners[0][k] + (i % 2 == 0 ? t.corners[0][k] : t.corners[1][k]);
-    }
     for (std::size_t k = 0; k < 3; ++k) ray.direction[k] -= (i % 3 == 0 ? 2 : 1) * ray.from[k];
     if (i % 7 == 0)
       for (double& x : ray.direction) x *= 0.1;

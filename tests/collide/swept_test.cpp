@@ -72,9 +72,8 @@ TEST_CASE("the first contact of moving boxes agrees with rational numbers, touch
       b.start.lo[0] = a.start.lo[0] + 1, b.start.hi[0] = a.start.hi[0] + 1;
       b.end.lo[0] = a.end.lo[0] + 1, b.end.hi[0] = a.end.hi[0] + 1;
     }
-    if (i % 4 == 3) {  // points
+    if (i % 4 == 3)  // points
       a.start.hi = a.start.lo, a.end.hi = a.end.lo;
-    }
     std::optional<Rational> expected;
     bool is_open = false, is_instant = true;
     for (const Rational& t : times(a, b)) {

@@ -31,17 +31,13 @@ CellGrid::CellGrid(const Aabb& domain, std::size_t n_cells, std::span<const Aabb
                     1,
                 0);
   const auto for_each_cell = [&](const Aabb& box, auto&& visit) {
-    const Cell first = cell_of(box.lo);
-    const Cell last = cell_of(box.hi);
+    const Cell first = cell_of(box.lo), last = cell_of(box.hi);
     for (std::int32_t z = first[2]; z <= last[2]; ++z) {
-      for (std::int32_t y = first[1]; y <= last[1]; ++y) {
+      for (std::int32_t y = first[1]; y <= last[1]; ++y)
         for (std::int32_t x = first[0]; x <= last[0]; ++x) visit(index({x, y, z}));
-      }
     }
   };
-  for (const Aabb& box : items) {
-    for_each_cell(box, [&](std::size_t c) { ++begin_[c + 1]; });
-  }
+  for (const Aabb& box : items) for_each_cell(box, [&](std::size_t c) { ++begin_[c + 1]; });
   for (std::size_t c = 1; c < begin_.size(); ++c) begin_[c] += begin_[c - 1];
   items_.resize(static_cast<std::size_t>(begin_.back()));
   std::vector<std::int64_t> next(begin_.begin(), begin_.end() - 1);

@@ -11,8 +11,7 @@
 
 namespace tess::test {
 
-using m2m::Aabb;
-using m2m::Point;
+using m2m::Aabb, m2m::Point;
 
 class CellGrid {
  public:
@@ -30,8 +29,7 @@ class CellGrid {
  private:
   [[nodiscard]] std::size_t index(const Cell& cell) const;
 
-  Point low_{};
-  Point cells_per_length_{};
+  Point low_{}, cells_per_length_{};
   Cell shape_{1, 1, 1};
   std::vector<std::int64_t> begin_;
   std::vector<std::int32_t> items_;

@@ -8,6 +8,7 @@
 #include "runtime/more/testing.hpp"
 #include "tests/m2m/element_meshes.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/run.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -87,16 +88,6 @@ bool is_exact(TransferKind kind) {
   return kind == TransferKind::second_order || kind == TransferKind::conservative;
 }
 
-Task attempt_cells(const CellCase& c, std::string* message) {
-  const std::vector<Field> fields{cell_field(*c.source)};
-  try {
-    co_await transfer_cells(*c.source, fields, *c.target, c.n_parts, PartitionMethod::curve,
-                            {.policy = c.policy, .kind = c.kind});
-  } catch (const Error& error) {
-    *message = error.what();
-  }
-}
-
 Task refused_cells(const TetMesh& mesh, TransferOptions options, std::string* message,
                    std::size_t* n_left) {
   const std::vector<Field> fields{cell_field(mesh)};
@@ -110,14 +101,10 @@ Task refused_cells(const TetMesh& mesh, TransferOptions options, std::string* me
 }
 
 /// Options are looked at before anything is sent, so the arrays may have no elements.
-Task refused(CouplingOptions options, std::string* message) {
+Task search_with(CouplingOptions options) {
   const auto none = create<CellWorker>(sparse);
   Coupling<CellWorker, CellWorker> coupling(none, none, options);
-  try {
-    co_await coupling.search();
-  } catch (const Error& error) {
-    *message = error.what();
-  }
+  co_await coupling.search();
 }
 
 }  // namespace
@@ -232,15 +219,14 @@ TEST_CASE("transfers of cells that are refused leave no pieces behind", "[m2m][c
     std::string message;
     std::size_t n_left = 1;
     const test::Machine machine{.pes = 2, .seed = 1};
-    machine.run([&]() -> Task { return refused_cells(mesh, options, &message, &n_left); })
-        .require_success();
+    machine.run([&] { return refused_cells(mesh, options, &message, &n_left); }).require_success();
     CHECK(n_left == 0);
     return message;
   };
   CHECK_THAT(refusal({.kind = TransferKind::second_order, .tolerance = -1}),
-             Catch::Contains("tolerance -1 is not a length"));
+             Contains("tolerance -1 is not a length"));
   CHECK_THAT(refusal({.kind = TransferKind::conservative, .clamp = true}),
-             Catch::Contains("kind conservative has no donors"));
+             Contains("kind conservative has no donors"));
 }
 
 TEST_CASE("fields in elements get the same bits for any number of parts and any schedule",
@@ -272,15 +258,12 @@ TEST_CASE("cells outside follow the policy, and a policy without a nearest cell 
     const CellOutcome given = moved_cells({kind, &source, &target, 2, UseValue{7}}, 1);
     CHECK(std::all_of(given.fields[0].values.begin(), given.fields[0].values.end(),
                       [](double value) { return value == 7; }));
-    std::string message;
-    const test::Machine machine{.pes = 1, .seed = 1};
-    machine
-        .run([&]() -> Task {
-          return attempt_cells({kind, &source, &target, 2, Nearest{}}, &message);
-        })
-        .require_success();
-    CHECK_THAT(message,
-               Catch::Contains(std::string("kind ") + name_of(kind) + " has no nearest cell"));
+    const std::vector<Field> fields{cell_field(source)};
+    const std::string message = tests::error_of("pes=1,seed=1", [&] {
+      return transfer_cells(source, fields, target, 2, PartitionMethod::curve,
+                            {.policy = Nearest{}, .kind = kind});
+    });
+    CHECK_THAT(message, Contains(std::string("kind ") + name_of(kind) + " has no nearest cell"));
   }
   const CellOutcome nearest = moved_cells({TransferKind::nearest, &source, &target, 2}, 1);
   CHECK(*std::min_element(nearest.fields[0].values.begin(), nearest.fields[0].values.end()) != 0);
@@ -288,28 +271,19 @@ TEST_CASE("cells outside follow the policy, and a policy without a nearest cell 
 
 TEST_CASE("couplings refuse kinds and centrings that do not go together by name", "[m2m][cells]") {
   const auto refusal = [](TransferKind kind, Centring source, Centring target) {
-    std::string message;
-    const test::Machine machine{.pes = 1, .seed = 1};
-    machine
-        .run([&]() -> Task {
-          CouplingOptions options;
-          options.kind = kind;
-          options.source_values = source;
-          options.target_values = target;
-          return refused(options, &message);
-        })
-        .require_success();
-    return message;
+    return tests::error_of("pes=1,seed=1", [=] {
+      return search_with({.kind = kind, .source_values = source, .target_values = target});
+    });
   };
   for (const TransferKind kind : {TransferKind::second_order, TransferKind::nearest})
     for (const Centring source : {Centring::cells, Centring::corners})
       CHECK_THAT(refusal(kind, source, Centring::nodes),
-                 Catch::Contains(std::string("kind ") + name_of(kind) + " takes values at nodes") &&
-                     Catch::Contains("choose linear or a conservative kind"));
+                 Contains(std::string("kind ") + name_of(kind) + " takes values at nodes") &&
+                     Contains("choose linear or a conservative kind"));
   for (const TransferKind kind : {TransferKind::linear, TransferKind::limited})
     CHECK_THAT(refusal(kind, Centring::nodes, Centring::cells),
-               Catch::Contains(std::string("kind ") + name_of(kind) + " gives values at points") &&
-                   Catch::Contains("centroids"));
+               Contains(std::string("kind ") + name_of(kind) + " gives values at points") &&
+                   Contains("centroids"));
   CHECK_THAT(refusal(TransferKind::conservative, Centring::nodes, Centring::corners),
-             Catch::Contains("choose nodes or cells"));
+             Contains("choose nodes or cells"));
 }

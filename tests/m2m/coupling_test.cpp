@@ -89,30 +89,22 @@ Task apply_three_times(int& n_received) {
   Coupling coupling(source, target);
   co_await coupling.search();
   for (int k = 0; k < 3; ++k) co_await coupling.apply<&Counted::give, &Counted::take>();
-  Future<int> total;
-  target.broadcast<&Counted::total>(total.callback());
-  n_received = co_await total;
+  n_received = co_await target.reduce<&Counted::total>();
 }
 
 /// Most pieces of the target are outside of the source.
 Task give_three_rounds(int& n_received, std::int64_t& n_filled, std::uint64_t& n_outside) {
   ArrayProxy<Counted> source, target;
   co_await epoch([&] { source = counted(2, 0.1), target = counted(8); });
-  CouplingOptions options;
-  options.policy = UseValue{42};
-  Coupling coupling(source, target, options);
+  Coupling coupling(source, target, {.policy = UseValue{42}});
   SearchSummary summary;
   for (int k = 0; k < 2; ++k) summary = co_await coupling.search();
   n_outside = summary.tally.count(Status::outside);
   co_await epoch([&] {
     for (int k = 0; k < 3; ++k) source.broadcast<&Counted::start_round>(coupling.id());
   });
-  Future<int> total;
-  target.broadcast<&Counted::total>(total.callback());
-  n_received = co_await total;
-  Future<std::int64_t> filled;
-  target.broadcast<&Counted::count_equal>(42.0, filled.callback());
-  n_filled = co_await filled;
+  n_received = co_await target.reduce<&Counted::total>();
+  n_filled = co_await target.reduce<&Counted::count_equal>(42.0);
 }
 
 /// A pure source that leaves out n_owned.
@@ -144,10 +136,7 @@ Task search_unowned(bool has_points, TransferKind kind, const OutsidePolicy& pol
     for (std::int32_t k = 0; k < 2 && has_points; ++k)
       source[{k}].send<&Unowned::load>(parts[static_cast<std::size_t>(k)]);
   });
-  CouplingOptions options;
-  options.kind = kind;
-  options.policy = policy;
-  Coupling coupling(source, target, options);
+  Coupling coupling(source, target, {.policy = policy, .kind = kind});
   co_await coupling.search();
 }
 
@@ -156,12 +145,12 @@ Task search_unowned(bool has_points, TransferKind kind, const OutsidePolicy& pol
 TEST_CASE("a source that owns no point is refused where points need the nearest vertex", "[m2m]") {
   const auto result = [](bool has_points, TransferKind kind, const OutsidePolicy& policy) {
     const test::Machine machine{.pes = 3, .seed = 5};
-    return machine.run([=]() -> Task { return search_unowned(has_points, kind, policy); });
+    return machine.run([=] { return search_unowned(has_points, kind, policy); });
   };
   for (const TransferKind kind : {TransferKind::nearest, TransferKind::linear}) {
     const test::Result refused = result(true, kind, Nearest{});
     CHECK(refused.exit_code == 2);
-    CHECK(refused.failure().find("set MeshView::n_owned in the source") != std::string::npos);
+    CHECK_THAT(refused.failure(), Contains("set MeshView::n_owned in the source"));
     CHECK(result(false, kind, Nearest{}).ok());  // nothing to own
   }
   CHECK(result(true, TransferKind::linear, Keep{}).ok());
@@ -173,7 +162,7 @@ TEST_CASE("a round that pieces start reaches those that no source piece gives va
     std::int64_t n_filled = 0;
     std::uint64_t n_outside = 0;
     const test::Machine machine{.pes = 1 + static_cast<int>(seed % 5), .seed = seed};
-    machine.run([&]() -> Task { return give_three_rounds(n_received, n_filled, n_outside); })
+    machine.run([&] { return give_three_rounds(n_received, n_filled, n_outside); })
         .require_success();
     REQUIRE(n_received == 3 * 8);
     REQUIRE(n_outside > 0);

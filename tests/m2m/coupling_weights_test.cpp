@@ -5,9 +5,11 @@
 #include "m2m/couple/row_book.hpp"
 #include "m2m/read_mesh.hpp"
 #include "runtime/wire/machine/simulated.hpp"
-#include "runtime/wire/machine/threads.hpp"
 #include "tests/m2m/field_values.hpp"
+#include "tests/m2m/gathered.hpp"
+#include "tests/m2m/samples.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/run.hpp"
 #include "tests/support/scratch.hpp"
 
 #include <algorithm>
@@ -16,10 +18,7 @@
 
 using namespace tess;
 using namespace tess::m2m;
-using tess::test::awkward_field;
-using tess::test::bits_of;
-using tess::test::message_of;
-using tess::test::Scratch;
+using tess::test::awkward_field, tess::test::bits_of, tess::test::Scratch;
 
 namespace {
 
@@ -32,8 +31,7 @@ struct Weighed {
   std::int32_t n_source_parts = 3, n_target_parts = 4;
 
   Weighed() {
-    for (Point& p : target.points)
-      for (double& x : p) x = x * 1.1 - 0.05;
+    target = test::moved_by(std::move(target), 1.1, -0.05);
     std::copy_n(source.points.begin(), 8, target.points.begin() + 60);
     field = awkward_field("f", source.n_points(), 2, 9);
     for (std::size_t i = 0; i < field.values.size(); ++i)
@@ -67,19 +65,13 @@ Task transfer_with_weights(const Weighed& c, Moved* result) {
       co_await collect_weights(transfer, static_cast<std::int64_t>(c.source.n_points()),
                                static_cast<std::int64_t>(c.target.n_points()));
   co_await transfer.apply();
-  Future<Outcome> outcome;
-  target.workers.broadcast<&Worker::gather>(outcome.callback());
-  const Outcome all = co_await outcome;
-  result->values.resize(2 * all.points.size());
-  for (std::size_t i = 0; i < all.points.size(); ++i)
-    std::copy_n(all.values.data() + 2 * i, 2,
-                result->values.data() + 2 * static_cast<std::size_t>(all.points[i]));
+  result->values = (co_await test::gathered(target)).values;
 }
 
 Moved run_case(const Weighed& c, std::int32_t n_pes) {
   Moved result;
-  Setup threads{make_threads_machine(n_pes), {}};
-  REQUIRE(run(threads, [&]() -> Task { return transfer_with_weights(c, &result); }) == 0);
+  REQUIRE(tests::run_threads(n_pes, [&] { return transfer_with_weights(c, &result); }).exit_code ==
+          0);
   // The same on a simulated machine that delays messages and migrates Workers.
   Moved again;
   SimulatedOptions options;
@@ -89,7 +81,7 @@ Moved run_case(const Weighed& c, std::int32_t n_pes) {
   RuntimeOptions runtime_options;
   runtime_options.migration_chance = 0.02;
   Setup simulated{make_simulated_machine(options), runtime_options};
-  REQUIRE(run(simulated, [&]() -> Task { return transfer_with_weights(c, &again); }) == 0);
+  REQUIRE(run(simulated, [&] { return transfer_with_weights(c, &again); }) == 0);
   CHECK(bits_of(again.values) == bits_of(result.values));
   CHECK(again.weights.rows.columns == result.weights.rows.columns);
   CHECK(bits_of(again.weights.rows.weights) == bits_of(result.weights.rows.weights));
@@ -147,12 +139,11 @@ TEST_CASE("weights of second-order transfers give the values up to rounding", "[
 }
 
 TEST_CASE("kinds whose values are no matrix times the source have no weights", "[m2m][weights]") {
-  CHECK_THAT(message_of([] { require_weights(TransferKind::limited, false); }),
-             Catch::Contains("kind limited has no weights"));
-  CHECK_THAT(message_of([] { require_weights(TransferKind::conservative, false); }),
-             Catch::Contains("kind conservative has no weights"));
-  CHECK_THAT(message_of([] { require_weights(TransferKind::linear, true); }),
-             Catch::Contains("leave out clamp"));
+  CHECK_THROWS_WITH(require_weights(TransferKind::limited, false),
+                    Contains("kind limited has no weights"));
+  CHECK_THROWS_WITH(require_weights(TransferKind::conservative, false),
+                    Contains("kind conservative has no weights"));
+  CHECK_THROWS_WITH(require_weights(TransferKind::linear, true), Contains("leave out clamp"));
 }
 
 TEST_CASE("rows over ids that are no numbering of vertices are refused", "[m2m][weights]") {
@@ -160,12 +151,10 @@ TEST_CASE("rows over ids that are no numbering of vertices are refused", "[m2m][
   const WeightMatrix matrix = matrix_of(rows, 5, 4);
   CHECK(matrix.rows.begin == std::vector<std::uint64_t>{0, 2, 2, 3, 3});
   CHECK(matrix.rows.columns == std::vector<VertexId>{1, 3, 4});
-  CHECK_THAT(message_of([&] { (void)matrix_of(rows, 4, 4); }),
-             Catch::Contains("source vertices with ids from 0 to 3, but one has the id 4"));
-  CHECK_THAT(message_of([&] { (void)matrix_of(rows, 5, 2); }),
-             Catch::Contains("target vertices with ids from 0 to 1, but one has the id 2"));
-  CHECK_THAT(message_of([&] {
-               (void)matrix_of({{1, 1}, {0, 0}, {}, {}}, 5, 4);
-             }),
-             Catch::Contains("two target vertices have the id 1"));
+  CHECK_THROWS_WITH(matrix_of(rows, 4, 4),
+                    Contains("source vertices with ids from 0 to 3, but one has the id 4"));
+  CHECK_THROWS_WITH(matrix_of(rows, 5, 2),
+                    Contains("target vertices with ids from 0 to 1, but one has the id 2"));
+  CHECK_THROWS_WITH(matrix_of({{1, 1}, {0, 0}, {}, {}}, 5, 4),
+                    Contains("two target vertices have the id 1"));
 }

@@ -5,9 +5,10 @@
 #include "m2m/transfer.hpp"
 #include "runtime/core/hash.hpp"
 #include "runtime/more/testing.hpp"
-#include "runtime/wire/machine/threads.hpp"
 #include "tests/m2m/error_norms.hpp"
+#include "tests/m2m/gathered.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/run.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -67,16 +68,10 @@ Task measure(Layout layout, std::vector<double> second, std::vector<FormulaField
       scalar_columns(2), {{0, 1}}, {{1, 1}}, {{0, 2}}};
   for (const std::vector<FieldColumns>& some : columns)
     answer.hashes.push_back(co_await hash_values(to, n, some));
-  Future<Outcome> outcome;
-  to.workers.broadcast<&Worker::gather>(outcome.callback());
-  const Outcome all = co_await outcome;
-  answer.status.resize(b.n_points());
-  answer.values.assign(2, std::vector<double>(b.n_points()));
-  for (std::size_t i = 0; i < all.points.size(); ++i) {
-    const auto v = static_cast<std::size_t>(all.points[i]);
-    answer.status[v] = all.status[i];
-    for (std::size_t f = 0; f < 2; ++f) answer.values[f][v] = all.values[2 * i + f];
-  }
+  const Outcome all = co_await test::gathered(to);
+  answer.status = all.status;
+  answer.values.resize(2);
+  for (std::size_t i = 0; i < all.values.size(); ++i) answer.values[i % 2].push_back(all.values[i]);
 }
 
 std::vector<double> smooth_values() {
@@ -87,8 +82,9 @@ std::vector<double> smooth_values() {
 Answer run_threads(int pes, const Layout& layout, const std::vector<double>& second,
                    const std::vector<FormulaField>& truth) {
   Answer answer;
-  Setup setup{make_threads_machine(pes), {}};
-  REQUIRE(run(setup, [&] { return measure(layout, second, truth, answer); }) == 0);
+  REQUIRE(tests::run_threads(pes, [&] {
+            return measure(layout, second, truth, answer);
+          }).exit_code == 0);
   return answer;
 }
 
@@ -177,8 +173,7 @@ TEST_CASE("norms and hashes have the same bits for any parts, PEs and order of m
                         static_cast<std::int32_t>(random.below(3))};
     const test::Machine machine{.pes = 1 + static_cast<int>(random.below(9)), .seed = seed};
     Answer answer;
-    machine.run([&]() -> Task { return measure(layout, second, usual_truth, answer); })
-        .require_success();
+    machine.run([&] { return measure(layout, second, usual_truth, answer); }).require_success();
     for (std::size_t f = 0; f < 2; ++f)
       REQUIRE(bits_of(answer.norms[f]) == bits_of(first.norms[f]));
     REQUIRE(answer.hashes == first.hashes);
@@ -203,13 +198,13 @@ TEST_CASE("a truth that is not finite is refused with its first vertex", "[m2m][
   const std::vector<double> second = smooth_values();
   // The points move back by 0.1, to x from about 0.2 on.
   const Answer answer = run_threads(2, {4}, second, {{"x*y", {}}, {"sqrt(x - 0.25)", {}}});
-  CHECK_THAT(answer.refusal, Catch::Contains("field sqrt(x - 0.25) is") &&
-                                 Catch::Contains("at vertex ") && Catch::Contains("of the target"));
+  CHECK_THAT(answer.refusal, Contains("field sqrt(x - 0.25) is") && Contains("at vertex ") &&
+                                 Contains("of the target"));
   CHECK(run_threads(1, {1}, second, {{"x*y", {}}, {"sqrt(x - 0.25)", {}}}).refusal ==
         answer.refusal);
   CHECK_THAT(run_threads(1, {1}, second, {{"x*y", {}}}).refusal,
-             Catch::Contains("2 components, and 1 formulas"));
-  CHECK_THAT(run_threads(1, {1}, second, {{"x*y", {}}, {"x*", {}}}).refusal, Catch::Contains("x*"));
+             Contains("2 components, and 1 formulas"));
+  CHECK_THAT(run_threads(1, {1}, second, {{"x*y", {}}, {"x*", {}}}).refusal, Contains("x*"));
 }
 
 TEST_CASE("of equal errors the first vertex is named, of bad truths the first component's",

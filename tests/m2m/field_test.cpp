@@ -11,8 +11,7 @@
 #include <limits>
 
 using namespace tess::m2m;
-using tess::test::error_norms;
-using tess::test::message_of;
+using tess::test::error_norms, tess::test::message_of;
 
 TEST_CASE("an expression has the value of the same expression in C++", "[m2m][field]") {
   const Point p{0.3, -1.5, 2};
@@ -37,15 +36,15 @@ TEST_CASE("an expression has the value of the same expression in C++", "[m2m][fi
 
 TEST_CASE("an error in an expression names its position", "[m2m][field]") {
   const auto message = [](const char* text) { return message_of([&] { Expression e{text}; }); };
-  CHECK_THAT(message(""), Catch::Contains("position 1: expected a value"));
-  CHECK_THAT(message("x +"), Catch::Contains("position 4: expected a value"));
-  CHECK_THAT(message("x + foo(y)"), Catch::Contains("position 5: unknown name 'foo'"));
-  CHECK_THAT(message("sin x"), Catch::Contains("position 5: expected '('"));
-  CHECK_THAT(message("min(x)"), Catch::Contains("position 6: expected ','"));
-  CHECK_THAT(message("(x"), Catch::Contains("position 3: expected ')'"));
-  CHECK_THAT(message("x y"), Catch::Contains("position 3: expected an operator"));
-  CHECK_THAT(message(std::string(100000, '(').c_str()), Catch::Contains("nested too deeply"));
-  CHECK_THAT(message(std::string(100000, '-').c_str()), Catch::Contains("nested too deeply"));
+  CHECK_THAT(message(""), Contains("position 1: expected a value"));
+  CHECK_THAT(message("x +"), Contains("position 4: expected a value"));
+  CHECK_THAT(message("x + foo(y)"), Contains("position 5: unknown name 'foo'"));
+  CHECK_THAT(message("sin x"), Contains("position 5: expected '('"));
+  CHECK_THAT(message("min(x)"), Contains("position 6: expected ','"));
+  CHECK_THAT(message("(x"), Contains("position 3: expected ')'"));
+  CHECK_THAT(message("x y"), Contains("position 3: expected an operator"));
+  CHECK_THAT(message(std::string(100000, '(').c_str()), Contains("nested too deeply"));
+  CHECK_THAT(message(std::string(100000, '-').c_str()), Contains("nested too deeply"));
 }
 
 TEST_CASE("error norms of a constant error are exact, and a NaN is the largest error",
@@ -93,6 +92,5 @@ TEST_CASE("the hash depends on every bit, and can be computed in pieces", "[m2m]
 TEST_CASE("the error for a formula that is not finite names the vertex", "[m2m][field]") {
   const TetMesh mesh = kuhn_mesh({2});
   const Formula formula = make_formula("1/(x-0.5)", bounds(mesh));
-  CHECK_THAT(message_of([&] { (void)sample(mesh, "f", formula); }),
-             Catch::Contains("at vertex 1 of kuhn:2"));
+  CHECK_THROWS_WITH(sample(mesh, "f", formula), Contains("at vertex 1 of kuhn:2"));
 }

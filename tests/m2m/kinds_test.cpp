@@ -5,9 +5,9 @@
 #include "runtime/more/testing.hpp"
 #include "tests/m2m/element_meshes.hpp"
 #include "tests/m2m/error_norms.hpp"
+#include "tests/m2m/gathered.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/n_seeds.hpp"
-#include "tests/support/scratch.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -44,12 +44,7 @@ Task transfer_twice(const KindCase& c, std::vector<double>& values, double& erro
   co_await transfer.search();
   co_await transfer.apply();
   co_await transfer.apply();  // the second uses what the first prepared
-  Future<Outcome> outcome;
-  target.workers.broadcast<&Worker::gather>(outcome.callback());
-  const Outcome all = co_await outcome;
-  values.assign(to.n_points(), 0);
-  for (std::size_t i = 0; i < all.points.size(); ++i)
-    values[static_cast<std::size_t>(all.points[i])] = all.values[i];
+  values = (co_await test::gathered(target)).values;
   error = error_norms(to, values, sample(to, "f", formula).values).l2;
 }
 
@@ -61,8 +56,7 @@ struct KindResult {
 KindResult result_of(const KindCase& c, std::uint64_t seed) {
   const test::Machine machine{.pes = 1 + static_cast<int>(seed % 4), .seed = seed};
   KindResult result;
-  machine.run([&]() -> Task { return transfer_twice(c, result.values, result.error); })
-      .require_success();
+  machine.run([&] { return transfer_twice(c, result.values, result.error); }).require_success();
   return result;
 }
 
@@ -83,20 +77,14 @@ Task transfer_linear(const TetMesh& from, const TetMesh& to, KindCut cut,
                      PartitionMethod::curve, target_halo_layers(cut.kind));
   });
   summary = co_await transfer(source, target, {.policy = cut.policy, .kind = cut.kind});
-  Future<Outcome> outcome;
-  target.workers.broadcast<&Worker::gather>(outcome.callback());
-  const Outcome all = co_await outcome;
-  values.assign(to.n_points(), 0);
-  for (std::size_t i = 0; i < all.points.size(); ++i)
-    values[static_cast<std::size_t>(all.points[i])] = all.values[i];
+  values = (co_await test::gathered(target)).values;
 }
 std::vector<double> linear_result(const TetMesh& from, const TetMesh& to, KindCut cut,
                                   std::uint64_t seed, Tally* tally = nullptr) {
   const test::Machine machine{.pes = 1 + static_cast<int>(seed % 4), .seed = seed};
   std::vector<double> values;
   TransferSummary summary;
-  machine.run([&]() -> Task { return transfer_linear(from, to, cut, values, summary); })
-      .require_success();
+  machine.run([&] { return transfer_linear(from, to, cut, values, summary); }).require_success();
   if (tally != nullptr) *tally = summary.search.tally;
   return values;
 }

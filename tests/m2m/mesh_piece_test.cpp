@@ -87,11 +87,8 @@ Task there_and_back(Counts& there_found, Counts& back_found) {
   }
   co_await epoch([&] { large.broadcast<&Patch::forget>(); });
   co_await back.apply<&Patch::field, &Patch::field>();
-  Future<Counts> there_counts, back_counts;
-  small.broadcast<&Patch::count>(there_counts.callback());
-  there_found = co_await there_counts;
-  large.broadcast<&Patch::count>(back_counts.callback());
-  back_found = co_await back_counts;
+  there_found = co_await small.reduce<&Patch::count>();
+  back_found = co_await large.reduce<&Patch::count>();
 }
 
 using ValueOf = std::map<GlobalId, double>;
@@ -146,14 +143,10 @@ Task transfer_in(std::int32_t n_source, std::int32_t n_target, TransferKind kind
     target = create_pieces<C>(kuhn_mesh({5, 0.1}), n_target, PartitionMethod::rcb,
                               target_halo_layers(kind));
   });
-  CouplingOptions options;
-  options.kind = kind;
-  Coupling coupling(source, target, options);
+  Coupling coupling(source, target, {.kind = kind});
   co_await coupling.search();
   co_await coupling.template apply<&C::field, &C::result>();
-  Future<ValueOf> values;
-  target.template broadcast<&C::values>(values.callback());
-  found = co_await values;
+  found = co_await target.template reduce<&C::values>();
 }
 
 /// The integral of the linear interpolant.
@@ -168,13 +161,13 @@ double integral(const TetMesh& mesh, const ValueOf& values) {
 template <class C>
 void check_same_in_any_pieces(TransferKind kind, ValueOf& whole) {
   const test::Machine one{.pes = 1, .seed = 1};
-  one.run([&]() -> Task { return transfer_in<C>(1, 1, kind, whole); }).require_success();
+  one.run([&] { return transfer_in<C>(1, 1, kind, whole); }).require_success();
   REQUIRE(whole.size() == 216);
   test::for_seeds(1, 9, [&](std::uint64_t seed) {
     ValueOf found;
     const test::Machine machine{.pes = 1 + static_cast<int>(seed % 4), .seed = seed};
     const auto n = static_cast<std::int32_t>(seed);
-    machine.run([&]() -> Task { return transfer_in<C>(1 + n % 5, 2 + n % 3, kind, found); })
+    machine.run([&] { return transfer_in<C>(1 + n % 5, 2 + n % 3, kind, found); })
         .require_success();
     REQUIRE(found == whole);
   });
@@ -205,7 +198,7 @@ TEST_CASE("pieces that the library creates take a field in their ghosts and give
   test::for_seeds(1, 21, [](std::uint64_t seed) {
     Counts there{}, back{};
     const test::Machine machine{.pes = 1 + static_cast<int>(seed % 5), .seed = seed};
-    machine.run([&]() -> Task { return there_and_back(there, back); }).require_success();
+    machine.run([&] { return there_and_back(there, back); }).require_success();
     REQUIRE(there[0] == 4);
     REQUIRE(there[1] == 6 * 64);
     REQUIRE(there[2] > 0);

@@ -17,8 +17,7 @@ inline m2m::MeshView view(const m2m::TetMesh& mesh) {
 
 /// A source and a target tetrahedron, as positions in two MeshViews.
 struct TetPair {
-  std::int32_t source;
-  std::int32_t target;
+  std::int32_t source, target;
 };
 
 /// All pairs of tetrahedra with boxes that overlap or touch, by target, then by source.

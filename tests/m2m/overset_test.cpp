@@ -14,9 +14,7 @@
 
 using namespace tess;
 using namespace tess::m2m;
-using overset::Assembly;
-using overset::Body;
-using overset::Problem;
+using overset::Assembly, overset::Body, overset::Problem;
 
 namespace {
 

@@ -53,9 +53,7 @@ struct Inspector : Group<Inspector> {
 
 Task inspect(DistributedMesh mesh, Contents* contents) {
   const auto inspectors = create<Inspector>(each_pe);
-  Future<Contents> all;
-  inspectors.broadcast<&Inspector::inspect>(mesh.workers, mesh.n_parts, all.callback());
-  *contents = co_await all;
+  *contents = co_await inspectors.reduce<&Inspector::inspect>(mesh.workers, mesh.n_parts);
 }
 
 struct Case {
@@ -95,7 +93,7 @@ Task compare(const Case& c, std::string* difference) {
 void check_on(std::unique_ptr<Machine> machine, const RuntimeOptions& options, const Case& c) {
   Setup setup{std::move(machine), options};
   std::string difference;
-  REQUIRE(run(setup, [&]() -> Task { return compare(c, &difference); }) == 0);
+  REQUIRE(run(setup, [&] { return compare(c, &difference); }) == 0);
   REQUIRE(difference.empty());
 }
 
@@ -133,21 +131,9 @@ TetMesh odd_mesh() {
   return mesh;
 }
 
-Task message_of_place(const TetMesh* mesh, PlaceOptions options,
-                      const std::vector<FormulaField>& fields, std::string* message) {
-  try {
-    co_await place(mesh, options, fields);
-  } catch (const Error& error) {
-    *message = error.what();
-  }
-}
-
 std::string refusal(const TetMesh& mesh, std::int32_t n_pes, PlaceOptions options = {4},
                     const std::vector<FormulaField>& fields = {}) {
-  std::string message;
-  const auto main = [&] { return message_of_place(&mesh, options, fields, &message); };
-  REQUIRE(tests::run(text("pes=", n_pes), main).exit_code == 0);
-  return message;
+  return tests::error_of(text("pes=", n_pes), [&] { return place(&mesh, options, fields); });
 }
 
 }  // namespace
@@ -271,8 +257,8 @@ TEST_CASE("all PEs together refuse a bad mesh with the message of validate()", "
       [&] { (void)sample(good, "1/(x - 1/3)", make_formula("1/(x - 1/3)", bounds(good))); });
   REQUIRE_FALSE(want.empty());
   for (const std::int32_t n_pes : {1, 3, 7}) CHECK(refusal(good, n_pes, {4}, fields) == want);
-  CHECK_THAT(refusal(good, 2, {0}), Catch::Contains("into 0 parts"));
-  CHECK_THAT(refusal(good, 2, {2, -1}), Catch::Contains("a halo of -1 layers"));
+  CHECK_THAT(refusal(good, 2, {0}), Contains("into 0 parts"));
+  CHECK_THAT(refusal(good, 2, {2, -1}), Contains("a halo of -1 layers"));
 }
 
 TEST_CASE("a set of vertices numbers them in ascending order", "[m2m][placement]") {
@@ -357,9 +343,8 @@ TEST_CASE("all PEs read their ranges of a binary gmsh file and of an ExodusII fi
           "[m2m][placement]") {
   const test::Scratch scratch;
   const TetMesh mesh = odd_mesh();
-  for (const std::uint64_t first_tag : {1U, 100U}) {
+  for (const std::uint64_t first_tag : {1U, 100U})
     check_ranges_of_file(scratch.write("a.msh", gmsh_bytes(mesh, first_tag, false)), 6);
-  }
   write_exodus(scratch.path("a.exo"), mesh, {});
   check_ranges_of_file(scratch.path("a.exo"), 6);
 }
@@ -410,7 +395,7 @@ TEST_CASE("a range with a vertex that does not exist is refused", "[m2m][placeme
       REQUIRE(ranges != nullptr);
       std::vector<Tet> tets(20);
       CHECK_NOTHROW(ranges->tets(0, tets));
-      CHECK_THROWS_WITH(ranges->tets(1, tets), Catch::Contains(words + std::to_string(bad + 1)));
+      CHECK_THROWS_WITH(ranges->tets(1, tets), Contains(words + std::to_string(bad + 1)));
     }
   }
 }
@@ -429,7 +414,7 @@ TEST_CASE("a file that read_mesh() refuses as a whole is not read in ranges", "[
        {std::pair{scratch.write("a.msh", gmsh), "elements announced"},
         std::pair{scratch.write("b.exo", exodus), "two blocks or sets with the same number"}}) {
     CHECK(open_ranges(name, RangeCheck::all) == nullptr);
-    CHECK_THROWS_WITH(read_mesh(name), Catch::Contains(words));
+    CHECK_THROWS_WITH(read_mesh(name), Contains(words));
   }
 }
 
@@ -451,9 +436,10 @@ namespace {
 
 MeshSurvey survey_on(int n_pes, const std::string& name,
                      const std::vector<FormulaField>& fields = {}) {
-  Setup setup{make_threads_machine(n_pes), {}};
   MeshSurvey out;
-  REQUIRE(run(setup, [&]() -> Task { out = co_await survey(name, fields); }) == 0);
+  REQUIRE(tests::run_threads(n_pes, [&]() -> Task {
+            out = co_await survey(name, fields);
+          }).exit_code == 0);
   return out;
 }
 
@@ -495,17 +481,7 @@ TEST_CASE("a survey refuses what a reader, validate() and sample() refuse", "[m2
       test::message_of([&] { (void)sample(mesh, formula, make_formula(formula, box)); });
   REQUIRE_FALSE(want.empty());
   const auto refusal_of = [](const std::string& name, const std::vector<FormulaField>& fields) {
-    std::string message;
-    Setup setup{make_threads_machine(3), {}};
-    const auto survey_it = [&]() -> Task {
-      try {
-        co_await survey(name, fields);
-      } catch (const Error& error) {
-        message = error.what();
-      }
-    };
-    REQUIRE(run(setup, survey_it) == 0);
-    return message;
+    return tests::error_of("pes=3", [&] { return survey(name, fields); });
   };
   CHECK(refusal_of("kuhn:4", {{"x", box}, {formula, box}}) == want);
   CHECK(refusal_of("kuhn:4", {{formula, box}, {"1/z", box}}) == want);  // whose first vertex is 0

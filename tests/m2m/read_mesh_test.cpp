@@ -13,10 +13,7 @@
 #include <map>
 
 using namespace tess::m2m;
-using tess::test::made_mesh;
-using tess::test::message_of;
-using tess::test::Scratch;
-using tess::test::shared_data;
+using tess::test::made_mesh, tess::test::message_of, tess::test::Scratch, tess::test::shared_data;
 
 namespace {
 
@@ -160,11 +157,11 @@ TEST_CASE("elements of higher order are refused by name", "[m2m][io][.][shared_d
     const std::string path = shared_data(known.file);
     const std::string message = message_of([&] { (void)read_mesh(path); });
     CHECK(one_line(message));
-    CHECK_THAT(message, Catch::Contains(known.word) && Catch::Contains(known.file));
+    CHECK_THAT(message, Contains(known.word) && Contains(known.file));
   }
   CHECK(total_volume(read_mesh(shared_data("mfem/simple-cube-tet4.e"))) > 0);
   const std::string surface = shared_data("skfem/cylinder_stokes.msh");
-  CHECK_THAT(message_of([&] { (void)read_mesh(surface); }), Catch::Contains("cylinder_stokes.msh"));
+  CHECK_THROWS_WITH(read_mesh(surface), Contains("cylinder_stokes.msh"));
 }
 
 TEST_CASE("a missing, empty or foreign file gives one line of error that names it", "[m2m][io]") {
@@ -178,11 +175,11 @@ TEST_CASE("a missing, empty or foreign file gives one line of error that names i
     const std::string message = message_of([&] { (void)read_mesh(path); });
     CAPTURE(path);
     CHECK(one_line(message));
-    CHECK_THAT(message, Catch::Contains(path));
+    CHECK_THAT(message, Contains(path));
   }
   for (const char* name : {"kuhn:", "kuhn:0", "kuhn:-1", "kuhn:x", "kuhn:3x", "kuhn:3@", "kuhn:3@1",
                            "kuhn:99999999999"}) {
-    CHECK_THAT(message_of([&] { (void)read_mesh(name); }), Catch::Contains(name));
+    CHECK_THROWS_WITH(read_mesh(name), Contains(name));
   }
 }
 
@@ -211,16 +208,16 @@ TEST_CASE("validate() names a wrong element, and allows flat and inverted tetrah
 
   TetMesh bad = mesh;
   bad.points[5][1] = std::numeric_limits<double>::quiet_NaN();
-  CHECK_THAT(message_of([&] { validate(bad); }), Catch::Contains("the mesh: vertex 5 has y = "));
+  CHECK_THROWS_WITH(validate(bad), Contains("the mesh: vertex 5 has y = "));
   bad = mesh;
   bad.points[5][2] = -std::numeric_limits<double>::infinity();
-  CHECK_THAT(message_of([&] { validate(bad); }), Catch::Contains("vertex 5 has z = "));
+  CHECK_THROWS_WITH(validate(bad), Contains("vertex 5 has z = "));
   bad = mesh;
   bad.tets[4][2] = 28;
-  CHECK_THAT(message_of([&] { validate(bad); }), Catch::Contains("tetrahedron 4 names vertex 28"));
+  CHECK_THROWS_WITH(validate(bad), Contains("tetrahedron 4 names vertex 28"));
   bad = mesh;
   bad.tets.clear();
-  CHECK_THAT(message_of([&] { validate(bad); }), Catch::Contains("no tetrahedra"));
+  CHECK_THROWS_WITH(validate(bad), Contains("no tetrahedra"));
 }
 
 TEST_CASE("a mesh whose coordinates have collapsed is refused by name, with the remedy", "[m2m]") {
@@ -234,7 +231,7 @@ TEST_CASE("a mesh whose coordinates have collapsed is refused by name, with the 
   const auto refused = [](const TetMesh& mesh, const char* word) {
     const std::string message = message_of([&] { validate(mesh); });
     CHECK(one_line(message));
-    CHECK_THAT(message, Catch::StartsWith("the mesh: ") && Catch::Contains(word));
+    CHECK_THAT(message, Catch::StartsWith("the mesh: ") && Contains(word));
   };
   refused(moved(1, 1e15), "shift the mesh towards the origin");
   refused(moved(1, -1e14), "shift the mesh towards the origin");

@@ -1,14 +1,12 @@
 #include "m2m/rigid_motion.hpp"
 
 #include "tests/support/catch.hpp"
-#include "tests/support/scratch.hpp"
 
 #include <cmath>
 #include <numbers>
 #include <vector>
 
 using namespace tess::m2m;
-using tess::test::message_of;
 
 TEST_CASE("a rotation turns counter-clockwise around its axis", "[m2m][motion]") {
   std::vector<Point> points{{2, 1, 5}, {1, 1, -3}};
@@ -34,10 +32,8 @@ TEST_CASE("a rotation keeps distances, and a translation without one is exact", 
 TEST_CASE("a rotation about an axis without a length is refused, and moves no point",
           "[m2m][motion]") {
   std::vector<Point> points{{1, 2, 5}};
-  CHECK_THAT(message_of([&] {
-               move_points(points, {.axis = {0, 0, 0}, .angle = 1});
-             }),
-             Catch::Contains("about the axis (0, 0, 0) has no direction"));
+  CHECK_THROWS_WITH(move_points(points, {.axis = {0, 0, 0}, .angle = 1}),
+                    Contains("about the axis (0, 0, 0) has no direction"));
   CHECK_THROWS(move_points(points, {.axis = {0, std::nan(""), 0}, .angle = 1}));
   CHECK(points[0] == Point{1, 2, 5});
 }

@@ -27,6 +27,12 @@ inline double gaussian(const m2m::Point& p) {
   for (const double x : p) squared += (4 * x - 2) * (4 * x - 2);
   return std::exp(-squared);
 }
+/// The mesh, each of whose coordinates x becomes scale x + offset.
+inline m2m::TetMesh moved_by(m2m::TetMesh mesh, double scale, double offset) {
+  for (m2m::Point& p : mesh.points)
+    for (double& x : p) x = x * scale + offset;
+  return mesh;
+}
 /// 1 within a ball, 0 outside.
 inline double ball(const m2m::Point& p) {
   const double x = p[0] - 0.5, y = p[1] - 0.45, z = p[2] - 0.4;

@@ -44,11 +44,10 @@ std::vector<Winner> search(const TetMesh& source, const TetMesh& target,
   };
   for (std::size_t v = 0; v < target.n_points(); ++v) {
     const Point& p = target.points[v];
-    for (const std::int32_t t : grid.items(grid.cell_of(p))) {
+    for (const std::int32_t t : grid.items(grid.cell_of(p)))
       if (overlap(boxes[static_cast<std::size_t>(t)], collide::box_of(p),
                   collide::Touching::counts))
         pairs.push_back({t, static_cast<std::int32_t>(v)});
-    }
     if (pairs.size() > 2048) flush();
   }
   flush();
@@ -95,9 +94,8 @@ SerialReport transfer_serial(const TetMesh& source, std::span<const Field> sourc
         }
       }
     } else if (const auto* given = std::get_if<UseValue>(&policy)) {
-      for (Field& field : target_fields) {
+      for (Field& field : target_fields)
         std::fill_n(field.values.data() + v * field.n_components, field.n_components, given->value);
-      }
     } else if (std::holds_alternative<Nearest>(policy)) {
       if (!nearest) nearest.emplace(source.points);
       const auto row = static_cast<std::size_t>(nearest->find(target.points[v]).vertex);

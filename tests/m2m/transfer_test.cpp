@@ -3,21 +3,17 @@
 #include "m2m/rows/interpolate/locate.hpp"
 #include "tests/m2m/error_norms.hpp"
 #include "tests/m2m/non_conforming.hpp"
+#include "tests/m2m/samples.hpp"
 #include "tests/m2m/serial_transfer.hpp"
 #include "tests/support/catch.hpp"
-#include "tests/support/scratch.hpp"
 #include "tests/support/shared_data.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 using namespace tess::m2m;
-using tess::test::error_norms;
-using tess::test::made_mesh;
-using tess::test::message_of;
-using tess::test::SerialReport;
-using tess::test::shared_data;
-using tess::test::transfer_serial;
+using tess::test::error_norms, tess::test::made_mesh, tess::test::moved_by,
+    tess::test::SerialReport, tess::test::shared_data, tess::test::transfer_serial;
 
 namespace {
 
@@ -41,13 +37,6 @@ Moved move_formula(const TetMesh& source, const TetMesh& target, const std::stri
 
 std::uint64_t outside(const Moved& moved) {
   return moved.report.counts[static_cast<std::size_t>(Status::outside)];
-}
-
-TetMesh moved_by(TetMesh mesh, double scale, double offset) {
-  for (Point& p : mesh.points) {
-    for (double& x : p) x = x * scale + offset;
-  }
-  return mesh;
 }
 
 /// Transfers each mesh onto itself.
@@ -103,8 +92,7 @@ TEST_CASE(
 
 TEST_CASE("an offset of 1e9 and scales of 1e-9 and 1e9 lose no vertex and no accuracy",
           "[m2m][transfer]") {
-  const TetMesh source = kuhn_mesh({7, 0.2});
-  const TetMesh target = kuhn_mesh({9, 0.2});
+  const TetMesh source = kuhn_mesh({7, 0.2}), target = kuhn_mesh({9, 0.2});
   const Moved plain = move_formula(source, target, "linear");
   CHECK(outside(plain) == 0);
   CHECK(plain.norms.linf < 1e-12);
@@ -162,9 +150,8 @@ TEST_CASE("the orientation of the source tetrahedra does not change the result",
   const Moved other = move_formula(inverted, target, "sin");
   CHECK(one.report.status == other.report.status);
   CHECK(one.report.tet == other.report.tet);
-  for (std::size_t v = 0; v < target.n_points(); ++v) {
+  for (std::size_t v = 0; v < target.n_points(); ++v)
     if (!(std::abs(one.values[v] - other.values[v]) < 1e-14)) FAIL("vertex " << v);
-  }
 }
 
 TEST_CASE("the sine field converges with order 2", "[m2m][transfer]") {
@@ -203,8 +190,7 @@ TEST_CASE("flat tetrahedra lose no vertex and keep a linear field exact", "[m2m]
         }
         return mesh;
       };
-      const TetMesh source = flatten(kuhn_mesh({6, 0.2}));
-      const TetMesh target = flatten(kuhn_mesh({7, 0.2}));
+      const TetMesh source = flatten(kuhn_mesh({6, 0.2})), target = flatten(kuhn_mesh({7, 0.2}));
       const Moved moved = move_formula(source, target, "linear");
       CHECK(outside(moved) == 0);
       CHECK(moved.norms.linf < 1e-11);
@@ -217,10 +203,9 @@ TEST_CASE("doubled vertices, flat tetrahedra and unused vertices do not change t
   TetMesh source = kuhn_mesh({4, 0.2});
   const std::size_t n = source.n_points();
   for (std::size_t v = 0; v < n; ++v) source.points.push_back(source.points[v]);
-  for (std::size_t t = 0; t < source.n_tets(); t += 2) {
+  for (std::size_t t = 0; t < source.n_tets(); t += 2)
     for (VertexId& v : source.tets[t])
       v += static_cast<VertexId>(n);  // half of the mesh uses the doubles
-  }
   source.tets.push_back({0, 1, 2, 1});
   source.tets.push_back({0, 1, 2, 3});  // four collinear points
   source.tets.insert(source.tets.begin(), Tet{0, 1, static_cast<VertexId>(n),
@@ -249,8 +234,7 @@ TEST_CASE("a transfer onto the same non-conforming mesh is exact", "[m2m][transf
 }
 
 TEST_CASE("vertices outside are counted, and get the value of the policy", "[m2m][transfer]") {
-  const TetMesh source = kuhn_mesh({4});
-  const TetMesh target = moved_by(kuhn_mesh({4}), 1, 0.5);
+  const TetMesh source = kuhn_mesh({4}), target = moved_by(kuhn_mesh({4}), 1, 0.5);
   const Formula truth = make_formula("x + 10*y + 100*z", bounds(source));
   const Field values = sample(source, "f", truth);
   for (const char* text : {"keep", "value:0.25", "nearest"}) {
@@ -268,15 +252,12 @@ TEST_CASE("vertices outside are counted, and get the value of the policy", "[m2m
       CHECK(moved.values[v] == Approx(wanted));
     }
   }
-  for (const char* text : {"", "value:", "value:x", "value:inf", "value:1 ", "drop"}) {
-    CHECK_THAT(message_of([&] { (void)parse_policy(text); }),
-               Catch::Contains("choose keep, nearest or value:NUMBER"));
-  }
+  for (const char* text : {"", "value:", "value:x", "value:inf", "value:1 ", "drop"})
+    CHECK_THROWS_WITH(parse_policy(text), Contains("choose keep, nearest or value:NUMBER"));
 }
 
 TEST_CASE("several fields of several components are transferred together", "[m2m][transfer]") {
-  const TetMesh source = kuhn_mesh({3});
-  const TetMesh target = kuhn_mesh({5, 0.1});
+  const TetMesh source = kuhn_mesh({3}), target = kuhn_mesh({5, 0.1});
   Field velocity{"velocity", 3, {}};
   for (const Point& p : source.points)
     velocity.values.insert(velocity.values.end(), {p[0], 2 * p[1], p[2] - p[0]});

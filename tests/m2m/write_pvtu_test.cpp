@@ -34,15 +34,15 @@ TEST_CASE("names that parts cannot write are refused before a part writes", "[m2
   const auto refusal = [&](std::vector<std::string> names) {
     std::string message;
     const test::Machine machine{.pes = 2, .seed = 1};
-    machine.run([&]() -> Task { return write_with(path, names, &message); }).require_success();
+    machine.run([&] { return write_with(path, names, &message); }).require_success();
     return message;
   };
   CHECK_THAT(refusal({"p", "p"}), Catch::StartsWith(path + ": two fields have the name 'p'"));
-  CHECK_THAT(refusal({"status", "p"}), Catch::Contains("two fields have the name 'status'"));
-  CHECK_THAT(refusal({"p", ""}), Catch::Contains("a field has no name"));
-  CHECK_THAT(refusal({"p\x01", "p\x02"}), Catch::Contains("two fields have the name 'p\ufffd'"));
+  CHECK_THAT(refusal({"status", "p"}), Contains("two fields have the name 'status'"));
+  CHECK_THAT(refusal({"p", ""}), Contains("a field has no name"));
+  CHECK_THAT(refusal({"p\x01", "p\x02"}), Contains("two fields have the name 'p\ufffd'"));
   path = scratch.path("r\xff.pvtu");
-  CHECK_THAT(refusal({"p", "q"}), Catch::Contains("XML, which names the parts, cannot hold"));
+  CHECK_THAT(refusal({"p", "q"}), Contains("XML, which names the parts, cannot hold"));
   path = scratch.path("r.pvtu");
   CHECK(scratch.n_files() == 0);
   CHECK(refusal({"p", "q"}).empty());
@@ -54,7 +54,7 @@ TEST_CASE("the index of parts names fields and files with any characters of XML"
   std::string message;
   const test::Machine machine{.pes = 2, .seed = 1};
   machine
-      .run([&]() -> Task {
+      .run([&] {
         return write_with(scratch.path("a & \"b\".pvtu"), {"<p>\n", "caf\xe9"}, &message);
       })
       .require_success();
@@ -63,5 +63,5 @@ TEST_CASE("the index of parts names fields and files with any characters of XML"
   for (const auto& element : test::read_xml(test::slurp(scratch.path("a & \"b\".pvtu"))))
     read += element.attributes;
   for (const char* written : {"Name=\"<p>\n\"", "Name=\"caf\ufffd\"", "Source=\"a & \"b\".1.vtu\""})
-    CHECK_THAT(read, Catch::Contains(written));
+    CHECK_THAT(read, Contains(written));
 }

@@ -6,11 +6,14 @@
 // A machine that delays messages and shrinks what fails is tess::test::Machine.
 #pragma once
 
+#include "runtime/core/error.hpp"
 #include "runtime/core/text.hpp"
 #include "runtime/run.hpp"
+#include "runtime/task.hpp"
 #include "runtime/wire/machine/simulated.hpp"
 #include "runtime/wire/machine/threads.hpp"
 
+#include <array>
 #include <memory>
 #include <string>
 #include <utility>
@@ -48,6 +51,30 @@ Ending run(const std::string& keys, Main main, tess::RuntimeOptions options = {}
 template <class Main>
 Ending run_threads(int n_pes, Main main, tess::RuntimeOptions options = {}) {
   return run_on(tess::make_threads_machine(n_pes), std::move(main), std::move(options));
+}
+
+/// The message of the Error that ends the coroutine `main` on a simulated machine: empty if it ends
+/// well, and the report if the run fails otherwise.
+template <class Main>
+std::string error_of(const std::string& keys, Main main) {
+  std::string message;
+  const auto catching = [&]() -> tess::Task {
+    try {
+      (void)co_await main();
+    } catch (const tess::Error& error) {
+      message = error.what();
+    }
+  };
+  const Ending ending = run(keys, catching);
+  return ending.exit_code == 0 ? message : ending.report;
+}
+
+/// The machine that an option of a program describes: "--pes=2", "--sim=pes=4,seed=1".
+inline tess::Setup setup_of(std::string option) {
+  std::string name = "test";
+  std::array<char*, 3> argv{name.data(), option.data(), nullptr};
+  int argc = 2;
+  return tess::take_options(argc, argv.data());
 }
 
 }  // namespace tests

@@ -21,8 +21,7 @@ TEST_CASE("neighbours are mutual, and the cube is periodic", "[apps][amr]") {
   for (std::int32_t x = 0; x < 4; ++x)
     for (std::int32_t y = 0; y < 4; ++y)
       for (Face face = 0; face < n_faces; ++face) {
-        const BlockIndex index = BlockIndex::at(2, {x, y, 3});
-        const BlockIndex beside = index.neighbour(face);
+        const BlockIndex index = BlockIndex::at(2, {x, y, 3}), beside = index.neighbour(face);
         CHECK(beside != index);
         CHECK(beside.neighbour(face ^ 1) == index);
       }

@@ -99,8 +99,7 @@ TEST_CASE("neighbours of three levels see the same linear field at a face", "[ap
       for (std::size_t i = 0; i < shown.size(); ++i)
         CHECK(std::abs(shown[i] - interpolated[i]) < 1e-8);
       // And its means are the values of this block's cells.
-      const std::vector<double> means = fine.coarse_layers(face);
-      const std::vector<double> values = here.layers(face);
+      const std::vector<double> means = fine.coarse_layers(face), values = here.layers(face);
       for (std::int32_t layer = 0; layer < 2; ++layer)
         for (std::int32_t row = 0; row < 4; ++row)
           for (std::int32_t column = 0; column < 4; ++column)
@@ -153,8 +152,7 @@ TEST_CASE("a periodic block alone follows a plain solver on a grid, in each orde
         const auto flow = [&](std::int32_t x, std::int32_t y, std::int32_t z, std::int32_t by) {
           const std::int32_t down = c >= 0 ? 1 : -1;  // downwind
           const std::int32_t upwind = by + (c >= 0 ? 0 : 1);
-          const double here = next(x, y, z, upwind);
-          const double ahead = next(x, y, z, upwind + down) - here;
+          const double here = next(x, y, z, upwind), ahead = next(x, y, z, upwind + down) - here;
           const double behind = here - next(x, y, z, upwind - down);
           const double w = order == 3 ? (2 - std::abs(c)) / 3 : 0.5;
           const double slope = order == 1 ? 0 : w * ahead + (1 - w) * behind;

@@ -33,9 +33,9 @@ TEST_CASE("a canvas holds what was drawn, in order, with any text", "[kit]") {
   canvas.ramp({0, 0}, 10, 5, 4, stops);
 
   const std::string svg = canvas.svg();
-  CHECK(svg.find("viewBox=\"-10 -10 120 70\"") != std::string::npos);
-  CHECK(svg.find("a &lt; b &amp; ") != std::string::npos);
-  CHECK(svg.find("clip-path=\"url(#inside)\" d=\"M0.0 0.0L1.0 2.0Zh0\"") != std::string::npos);
+  CHECK_THAT(svg, Contains("viewBox=\"-10 -10 120 70\""));
+  CHECK_THAT(svg, Contains("a &lt; b &amp; "));
+  CHECK_THAT(svg, Contains("clip-path=\"url(#inside)\" d=\"M0.0 0.0L1.0 2.0Zh0\""));
   const auto elements = tess::test::read_xml(svg);
   const auto n = [&](const char* name) {
     return std::ranges::count(elements, name, &tess::test::XmlElement::name);

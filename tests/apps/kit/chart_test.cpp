@@ -16,11 +16,8 @@
 #include <limits>
 
 using namespace kit;
-using tess::test::message_of;
-using tess::test::read_xml;
-using tess::test::Scratch;
-using tess::test::slurp;
-using tess::test::XmlElement;
+using tess::test::message_of, tess::test::read_xml, tess::test::Scratch, tess::test::slurp,
+    tess::test::XmlElement;
 
 namespace {
 
@@ -161,11 +158,11 @@ TEST_CASE("lines without marks differ where colours repeat", "[apps][plot][.][gn
 TEST_CASE("the error names a path that cannot be written", "[apps][plot]") {
   const Scratch scratch;
   const std::string path = scratch.path("absent") + "/a.svg";
-  CHECK_THAT(message_of([&] { write_svg(path, two_series()); }),
-             Catch::Contains("absent/a.csv: cannot be written (No such file or directory)"));
-  CHECK_THAT(message_of([&] { write_svg(path, Timeline{}); }), Catch::Contains("absent/a.csv"));
-  CHECK_THAT(message_of([&] { write_svg(scratch.path("a.png"), two_series()); }),
-             Catch::Contains("a.png: a picture's name must end in .svg"));
+  CHECK_THROWS_WITH(write_svg(path, two_series()),
+                    Contains("absent/a.csv: cannot be written (No such file or directory)"));
+  CHECK_THROWS_WITH(write_svg(path, Timeline{}), Contains("absent/a.csv"));
+  CHECK_THROWS_WITH(write_svg(scratch.path("a.png"), two_series()),
+                    Contains("a.png: a picture's name must end in .svg"));
   CHECK(scratch.n_files() == 0);
 }
 
@@ -174,14 +171,14 @@ TEST_CASE("neither a picture nor its data may be another file of the run", "[app
   for (const char* file : {"a.svg", "a.csv"}) {
     FileNames names;
     names.writes("--json", scratch.path(file));
-    CHECK_THAT(message_of([&] { names.writes_picture("--plot", scratch.path("a.svg")); }),
-               Catch::Contains(std::string(file) + " would overwrite --json"));
+    CHECK_THROWS_WITH(names.writes_picture("--plot", scratch.path("a.svg")),
+                      Contains(std::string(file) + " would overwrite --json"));
     names.writes_picture("--plot", scratch.path("b.svg"));
     names.writes_picture("--plot", "");
   }
   std::filesystem::create_directory(scratch.path("c.csv"));
-  CHECK_THAT(message_of([&] { require_picture("--plot", scratch.path("c.svg")); }),
-             Catch::Contains("c.csv: cannot be written: is a directory"));
+  CHECK_THROWS_WITH(require_picture("--plot", scratch.path("c.svg")),
+                    Contains("c.csv: cannot be written: is a directory"));
   require_picture("--plot", scratch.path("d.svg"));
 }
 
@@ -238,9 +235,9 @@ TEST_CASE("the error names a bar that is not valid", "[apps][plot]") {
       write_svg(scratch.path("t.svg"), Timeline{.rows = {"PE 0"}, .bars = {{0, 0, 1}, bar}});
     });
   };
-  CHECK_THAT(message({1, 0, 1}), Catch::Contains("bar 1 of the timeline: row 1 of 1"));
-  CHECK_THAT(message({0, 2, 1}), Catch::Contains("from 2 to 1"));
-  CHECK_THAT(message({0, 0, std::numeric_limits<double>::infinity()}), Catch::Contains("inf"));
+  CHECK_THAT(message({1, 0, 1}), Contains("bar 1 of the timeline: row 1 of 1"));
+  CHECK_THAT(message({0, 2, 1}), Contains("from 2 to 1"));
+  CHECK_THAT(message({0, 0, std::numeric_limits<double>::infinity()}), Contains("inf"));
   CHECK(scratch.n_files() == 0);
 }
 

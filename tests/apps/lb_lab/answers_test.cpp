@@ -47,7 +47,7 @@ TEST_CASE("a cut has every cell once, and neighbours agree that they are", "[lb_
       REQUIRE(seen.size() == static_cast<std::size_t>(domain.n_cells()));
     }
   }
-  CHECK_THROWS_WITH(cut(line_of(4), 5), Catch::Contains("4 x 1") && Catch::Contains("5 blocks"));
+  CHECK_THROWS_WITH(cut(line_of(4), 5), Contains("4 x 1") && Contains("5 blocks"));
 }
 
 TEST_CASE("a walk returns to its word, after any number of steps", "[lb_lab]") {

@@ -2,8 +2,7 @@
 
 #include "runtime/runtime.hpp"
 #include "tests/support/catch.hpp"
-
-#include <array>
+#include "tests/support/run.hpp"
 
 namespace lb_lab {
 namespace {
@@ -15,10 +14,7 @@ tess::Task fill(Sweep& sweep) {
 }  // namespace
 
 Sweep sweep_on(const std::string& options, Settings settings) {
-  std::string program = "test", sim = "--sim=" + options;
-  std::array<char*, 3> argv{program.data(), sim.data(), nullptr};
-  int argc = 2;
-  tess::Setup setup = tess::take_options(argc, argv.data());
+  tess::Setup setup = tests::setup_of("--sim=" + options);
   complete(settings, setup.machine->n_pes());
   Sweep sweep;
   sweep.settings = std::move(settings);

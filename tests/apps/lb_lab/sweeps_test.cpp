@@ -6,6 +6,7 @@
 #include "runtime/balance/strategy.hpp"
 #include "tests/apps/lb_lab/on_simulated.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/scratch.hpp"
 
 #include <algorithm>
 #include <cstdio>
@@ -16,21 +17,9 @@
 #include <sstream>
 
 using namespace lb_lab;
+using tess::test::Scratch;
 
 namespace {
-
-/// A directory of its own for the files of a test.
-struct Scratch {
-  std::filesystem::path path;
-  Scratch() {
-    std::string name = (std::filesystem::temp_directory_path() / "lb_lab.XXXXXX").string();
-    REQUIRE(mkdtemp(name.data()) != nullptr);
-    path = name;
-  }
-  ~Scratch() { std::filesystem::remove_all(path); }
-  Scratch(const Scratch&) = delete;
-  Scratch& operator=(const Scratch&) = delete;
-};
 
 Settings linear() {
   Settings s;
@@ -67,7 +56,7 @@ std::string save_without_positions(const Scratch& scratch, const char* name) {
     e.memory_bytes.push_back(10);
     e.block.push_back(0);
   }
-  const std::string file = (scratch.path / name).string();
+  const std::string file = scratch.path(name);
   const std::string text = tess::balance::write_lb_datafile({{0, s}, {1, s}});
   std::ofstream(file, std::ios::binary) << tess::balance::lb_datafile_bytes(file, text);
   return file;
@@ -165,14 +154,13 @@ TEST_CASE("the snapshots given to a strategy are saved, and their replay gives t
   Settings s = linear();
   s.per_pe = {16};
   s.strategies = {"greedy"};
-  s.snapshots = scratch.path.string();
-  s.plot = scratch.path.string();
+  s.snapshots = scratch.path("");
+  s.plot = scratch.path("");
   const Sweep sweep = sweep_on("pes=4,cost=1us", s);
   for (const char* name : {"time", "imbalance", "timeline-none", "timeline-greedy"})
-    CHECK(std::filesystem::exists(scratch.path / (std::string("linear-") + name + ".csv")));
+    CHECK(std::filesystem::exists(scratch.path(std::string("linear-") + name + ".csv")));
   for (int pe = 0; pe < 4; ++pe)
-    s.replay.push_back(
-        (scratch.path / "linear-16-greedy" / ("data." + std::to_string(pe) + ".json.br")).string());
+    s.replay.push_back(scratch.path("linear-16-greedy/data." + std::to_string(pe) + ".json.br"));
   s.strategies = {"none", "greedy"};
   const Replayed replayed = replay(s);
   const auto& rows = replayed.rows.members();
@@ -200,9 +188,9 @@ TEST_CASE("the snapshots given to a strategy are saved, and their replay gives t
   }
   s.replay_pes = 7;
   s.strategies = {"graph"};
-  CHECK(replay(s).table.find("      7        64 graph") != std::string::npos);
+  CHECK_THAT(replay(s).table, Contains("      7        64 graph"));
   s.speeds = {1, 2};
-  CHECK_THROWS_WITH(replay(s), Catch::Contains("2 speeds for a replay on 7 PEs"));
+  CHECK_THROWS_WITH(replay(s), Contains("2 speeds for a replay on 7 PEs"));
 }
 
 TEST_CASE("compressed and plain snapshots replay alike", "[lb_lab]") {
@@ -213,7 +201,7 @@ TEST_CASE("compressed and plain snapshots replay alike", "[lb_lab]") {
   std::map<std::string, std::string> table;
   for (const char* format : {"json", "json.br"}) {
     s.replay.clear();
-    s.snapshots = (scratch.path / format).string();
+    s.snapshots = scratch.path(format);
     s.snapshot_format = format;
     (void)sweep_on("pes=2,cost=1us", s);
     for (int pe = 0; pe < 2; ++pe)
@@ -224,15 +212,15 @@ TEST_CASE("compressed and plain snapshots replay alike", "[lb_lab]") {
     table[format] = without_times(replay(all).table);
   }
   CHECK(table["json"] == table["json.br"]);
-  CHECK(table["json"].find("hilbert") != std::string::npos);
-  CHECK(table["json"].find("left out") == std::string::npos);
+  CHECK_THAT(table["json"], Contains("hilbert"));
+  CHECK_THAT(table["json"], !Contains("left out"));
 
   Settings folder = s;
   folder.strategies = {"all"};
   folder.replay = {s.snapshots + "/linear-4-greedy"};
   CHECK(without_times(replay(folder).table) == table["json"]);
-  folder.replay = {scratch.path.string()};
-  CHECK_THROWS_WITH(replay(folder), Catch::Contains("has no file named *.json"));
+  folder.replay = {scratch.path("")};
+  CHECK_THROWS_WITH(replay(folder), Contains("has no file named *.json"));
 }
 
 TEST_CASE("a saved snapshot has the index of each element and its measured load", "[lb_lab]") {
@@ -240,15 +228,15 @@ TEST_CASE("a saved snapshot has the index of each element and its measured load"
   Settings s = linear();
   s.per_pe = {4};
   s.strategies = {"greedy"};
-  s.snapshots = scratch.path.string();
+  s.snapshots = scratch.path("");
   s.snapshot_format = "json";
   (void)sweep_on("pes=4,cost=1us", s);
-  REQUIRE(std::filesystem::exists(scratch.path / "linear-4-greedy" / "data.3.json"));
+  REQUIRE(std::filesystem::exists(scratch.path("linear-4-greedy/data.3.json")));
   (void)sweep_on("pes=2,cost=1us", s);
-  CHECK_FALSE(std::filesystem::exists(scratch.path / "linear-4-greedy" / "data.3.json"));
+  CHECK_FALSE(std::filesystem::exists(scratch.path("linear-4-greedy/data.3.json")));
   double first = 0;
   for (int pe = 0; pe < 2; ++pe) {
-    std::ifstream file(scratch.path / "linear-4-greedy" / ("data." + std::to_string(pe) + ".json"));
+    std::ifstream file(scratch.path("linear-4-greedy/data." + std::to_string(pe) + ".json"));
     const nlohmann::json root = nlohmann::json::parse(file);
     const nlohmann::json& tasks = root.at("phases").at(0).at("tasks");
     REQUIRE(tasks.size() == 4);
@@ -281,8 +269,8 @@ TEST_CASE("all leaves out what a snapshot without positions cannot serve, and sa
     CHECK(is_left_out == !is_row);
   }
   s.strategies = {"greedy", "rcb"};
-  CHECK_THROWS_WITH(replay(s), Catch::Contains("--strategy rcb: the snapshot does not have") &&
-                                   Catch::Contains("data.0.json.br"));
+  CHECK_THROWS_WITH(replay(s), Contains("--strategy rcb: the snapshot does not have") &&
+                                   Contains("data.0.json.br"));
 }
 
 TEST_CASE("memory limits of a replay count a shared block once per PE", "[lb_lab]") {
@@ -306,5 +294,5 @@ TEST_CASE("memory limits of a replay count a shared block once per PE", "[lb_lab
   CHECK(moves({140}) == Numbers{4, 140, 0});
   CHECK(moves({0, 120}) == Numbers{2, 160, 0});
   CHECK(moves({150, 109}) == Numbers{0, 180, 1});  // above its limit as it is
-  CHECK_THROWS_WITH(moves({1, 2, 3}), Catch::Contains("--memory-limit: 3 limits for 2 PEs"));
+  CHECK_THROWS_WITH(moves({1, 2, 3}), Contains("--memory-limit: 3 limits for 2 PEs"));
 }

@@ -60,8 +60,7 @@ TEST_CASE("with a far cutoff the law is that of Lennard and Jones", "[leanmd]") 
 TEST_CASE("the force is the negative slope of the energy, and both end at the cutoff", "[leanmd]") {
   const LennardJones law(edge, 2.5);
   for (const double r : {0.5, 0.8, 1.0, 1.3, 1.9, 2.4, 2.499}) {
-    const double h = 1e-4 * r;
-    const double slope = (energy(law, r + h) - energy(law, r - h)) / (2 * h);
+    const double h = 1e-4 * r, slope = (energy(law, r + h) - energy(law, r - h)) / (2 * h);
     CHECK(force(law, r) == Approx(-slope).epsilon(1e-3).margin(2e-3));
   }
   CHECK(std::abs(energy(law, 2.4999)) < 1e-6);
@@ -92,11 +91,10 @@ TEST_CASE("the forces do not depend on the cut into cells", "[leanmd]") {
         Forces on_a, on_b;
         on_a.on.resize(cells[a].size());
         on_b.on.resize(cells[b].size());
-        if ((a + b) % 2 == 0) {
+        if ((a + b) % 2 == 0)
           law.add(cells[a], cells[b], on_a, on_b);
-        } else {
+        else
           law.add(cells[b], cells[a], on_b, on_a);
-        }
         sums[a] = AddForces{}(on_a, sums[a]);
         sums[b] = AddForces{}(std::move(sums[b]), on_b);
       }

@@ -28,9 +28,8 @@ Outcome run(Options options, int n_pes, std::uint64_t seed) {
   tess::Setup setup = tess::test::adversarial(n_pes, seed);
   Outcome outcome;
   const Motion motion(start.edge, options.problem.dt);
-  REQUIRE(tess::run(setup, [&]() -> tess::Task {
-            return simulate(options, initial_atoms(start, motion), outcome);
-          }) == 0);
+  REQUIRE(tess::run(setup,
+                    [&] { return simulate(options, initial_atoms(start, motion), outcome); }) == 0);
   return outcome;
 }
 
@@ -54,9 +53,7 @@ TEST_CASE("the result is the same for any cells, PEs, schedules and migrations",
     for (const char* strategy : {"", "random", "greedy_refine,when=automatic", "diffusion"}) {
       INFO("seed " << ++seed << ", strategy " << strategy);
       Options options = small(cells);
-      if (*strategy != '\0') {
-        options.balance = tess::parse_balance(strategy);
-      }
+      if (*strategy != '\0') options.balance = tess::parse_balance(strategy);
       const Outcome outcome = run(options, 1 + static_cast<int>(seed % 7), seed);
       CHECK(outcome.error.empty());
       CHECK(outcome.hash == expected.hash);
@@ -75,7 +72,7 @@ TEST_CASE("pairs that no compute sees are found", "[leanmd]") {
   const Outcome outcome = run(options, 3, 1);
   INFO(outcome.error);
   CHECK(outcome.wrong_forces > 0);
-  CHECK(outcome.error.find("differ from those of all pairs") != std::string::npos);
+  CHECK_THAT(outcome.error, Contains("differ from those of all pairs"));
   CHECK(outcome.is_wrong);
 }
 
@@ -88,7 +85,7 @@ TEST_CASE("a run that cannot continue says why, and ends early", "[leanmd]") {
     CHECK(outcome.error.find("step 1, atom ") == 0);
     CHECK_FALSE(outcome.is_wrong);
     CHECK(outcome.energies.size() == 1);
-    CHECK(table(options, outcome).find(" cells, 0 steps: ") != std::string::npos);
+    CHECK_THAT(table(options, outcome), Contains(" cells, 0 steps: "));
     CHECK(outcome.error == run(options, 1, 0).error);
   }
 }
@@ -105,7 +102,7 @@ TEST_CASE("the energy drift is of second order in the time step", "[leanmd]") {
   options.check = options.reverse = false;
   tess::Setup setup = tess::test::adversarial(3, 4);
   std::vector<StudyRow> rows;
-  REQUIRE(tess::run(setup, [&]() -> tess::Task { return study(options, start, rows); }) == 0);
+  REQUIRE(tess::run(setup, [&] { return study(options, start, rows); }) == 0);
   REQUIRE(rows.size() == 5);
   CHECK(fitted_order(rows).value() == Approx(2).margin(0.1));
 }
@@ -116,7 +113,7 @@ TEST_CASE("a study marks wrong results, and has no order without two rows", "[le
   options.problem.skin = -2;  // so a cell of edge 1.3 reaches only the next one
   tess::Setup setup = tess::test::adversarial(3, 4);
   std::vector<StudyRow> rows;
-  REQUIRE(tess::run(setup, [&]() -> tess::Task { return study(options, start, rows); }) == 0);
+  REQUIRE(tess::run(setup, [&] { return study(options, start, rows); }) == 0);
   REQUIRE(rows.size() == 5);
   for (const StudyRow& row : rows) CHECK(row.is_wrong);
   CHECK_FALSE(fitted_order(rows));

@@ -5,8 +5,8 @@
 #include "m2m/kuhn.hpp"
 #include "m2m/read_mesh.hpp"
 #include "m2m/write_exodus.hpp"
-#include "runtime/wire/machine/threads.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/run.hpp"
 #include "tests/support/scratch.hpp"
 
 #include <array>
@@ -64,9 +64,8 @@ std::string element_file(const Scratch& scratch, std::size_t n) {
 FileFieldsReport moved(const FileFieldsRequest& request, std::int32_t n_pes = 2) {
   FileFieldsReport report;
   kit::Progress progress(nullptr);
-  Setup setup{make_threads_machine(n_pes), {}};
   const auto main = [&]() -> Task { report = co_await move_file_fields(request, progress); };
-  REQUIRE(run(setup, main) == 0);
+  REQUIRE(tests::run_threads(n_pes, main).exit_code == 0);
   return report;
 }
 
@@ -80,8 +79,7 @@ Task attempt(const FileFieldsRequest& request, std::string* message) {
 }
 std::string refusal(const FileFieldsRequest& request) {
   std::string message;
-  Setup setup{make_threads_machine(1), {}};
-  REQUIRE(run(setup, [&]() -> Task { return attempt(request, &message); }) == 0);
+  REQUIRE(tests::run_threads(1, [&] { return attempt(request, &message); }).exit_code == 0);
   return message;
 }
 
@@ -110,12 +108,11 @@ TEST_CASE("vertices of no element are reported, and those that coincide in a tra
   };
   const std::string unused = "in the source: 1 of 28 vertices belong to no element";
   const std::string coincident = "2 of 28 vertices have the place of another";
-  CHECK_THAT(shown("kuhn:2"), Catch::Contains("unused       " + unused) &&
-                                  !Catch::Contains(coincident) &&
-                                  !Catch::Contains("in the target"));
-  CHECK_THAT(shown(path), Catch::Contains("in the target: 1 of 28 vertices belong to no element") &&
-                              Catch::Contains("coincident   in the source: " + coincident) &&
-                              Catch::Contains("\"coincident\": \"" + coincident));
+  CHECK_THAT(shown("kuhn:2"), Contains("unused       " + unused) && !Contains(coincident) &&
+                                  !Contains("in the target"));
+  CHECK_THAT(shown(path), Contains("in the target: 1 of 28 vertices belong to no element") &&
+                              Contains("coincident   in the source: " + coincident) &&
+                              Contains("\"coincident\": \"" + coincident));
 }
 
 TEST_CASE("a field that is called status is written beside the status of the vertices",
@@ -202,30 +199,30 @@ TEST_CASE("fields, steps and weights that do not exist are refused by name", "[m
     return refusal(request);
   };
   CHECK_THAT(changed([](auto& r) { r.fields = {"tmp"}; }),
-             Catch::Contains("source.exo: has no variable 'tmp' at vertices; it has: temp, v") &&
-                 Catch::Contains("steps 0..19"));
-  CHECK_THAT(changed([](auto& r) { r.step = "20"; }), Catch::Contains("has no step 20"));
+             Contains("source.exo: has no variable 'tmp' at vertices; it has: temp, v") &&
+                 Contains("steps 0..19"));
+  CHECK_THAT(changed([](auto& r) { r.step = "20"; }), Contains("has no step 20"));
   CHECK_THAT(changed([](auto& r) { r.step = "99999999999999999999"; }),
-             Catch::Contains("--step 99999999999999999999 is no step"));
-  CHECK_THAT(changed([](auto& r) { r.step = "-1"; }), Catch::Contains("--step -1 is no step"));
-  CHECK_THAT(changed([](auto& r) { r.step = "last"; }), Catch::Contains("--step last is no step"));
+             Contains("--step 99999999999999999999 is no step"));
+  CHECK_THAT(changed([](auto& r) { r.step = "-1"; }), Contains("--step -1 is no step"));
+  CHECK_THAT(changed([](auto& r) { r.step = "last"; }), Contains("--step last is no step"));
   CHECK_THAT(changed([](auto& r) {
                r.step = "1";
                r.fields = {"sin"};
              }),
-             Catch::Contains("--step 1 chooses a step of a field"));
+             Contains("--step 1 chooses a step of a field"));
   CHECK_THAT(changed([](auto& r) { r.from_weights = "none.nc"; }),
-             Catch::Contains("none.nc: cannot be opened"));
+             Contains("none.nc: cannot be opened"));
   CHECK_THAT(changed([&](auto& r) {
                r.weights = scratch.path("w.nc");
                r.kind = "limited";
              }),
-             Catch::Contains("kind limited has no weights"));
+             Contains("kind limited has no weights"));
   CHECK_THAT(changed([](auto& r) {
                r.step = "all";
                r.out = "x.vtu";
              }),
-             Catch::Contains("VTU holds one step"));
+             Contains("VTU holds one step"));
   FileFieldsRequest formula = good;
   formula.fields = {"x + y"};
   CHECK_FALSE(is_for_files(formula));
@@ -290,14 +287,14 @@ TEST_CASE("fields in elements are moved to elements at all steps, and written as
   const FieldFile file(request.out);
   CHECK(result_hash(file.tet_field(read_mesh(request.out), "q", 0).values) ==
         one.steps[0].result_hash);
-  CHECK(table(one).find("cells found") != std::string::npos);
+  CHECK_THAT(table(one), Contains("cells found"));
   CHECK(json_of(one).at("cells_inside").text() == std::to_string(one.cell_tally.counts[0]));
 
   request.out.clear();
   request.weights = scratch.path("w.nc");
   request.kind = "linear";
-  CHECK_THAT(refusal(request), Catch::Contains("--fields names a field in elements"));
+  CHECK_THAT(refusal(request), Contains("--fields names a field in elements"));
   request.weights.clear();
   request.policy = "nearest";
-  CHECK_THAT(refusal(request), Catch::Contains("kind linear has no nearest cell"));
+  CHECK_THAT(refusal(request), Contains("kind linear has no nearest cell"));
 }

@@ -7,9 +7,7 @@
 #include <map>
 
 using namespace particles;
-using tess::dn::Bounds;
-using tess::dn::Surface;
-using tess::dn::Vec3;
+using tess::dn::Bounds, tess::dn::Surface;
 
 namespace {
 
@@ -71,5 +69,5 @@ TEST_CASE("boxes that cut one another into too many cells are refused", "[partic
   const std::string scene = R"({"dt": 1, "steps": 0, "objects": [{"shape": {"boxes": [)" + boxes +
                             R"(]}}], "emitters": [{"count": 1, "sphere": {"radius": 1}}]})";
   CHECK_THROWS_WITH(parse_scene(scene, "scene.json"),
-                    Catch::Contains("cannot be joined: 240 boxes cut one another"));
+                    Contains("cannot be joined: 240 boxes cut one another"));
 }

@@ -27,10 +27,9 @@ std::size_t count(const std::string& text, const std::string& what) {
 }
 
 Scene with_object(const std::string& object, const std::string& outputs = "{}") {
-  return parse_scene(R"({"dt": 0.01, "steps": 100, "objects": [)" + object +
-                         R"(], "emitters": [{"count": 1, "sphere": {"radius": 1}}], "outputs": )" +
-                         outputs + "}",
-                     "scene.json");
+  return scene_of(R"({"dt": 0.01, "steps": 100, "objects": [)" + object +
+                  R"(], "emitters": [{"count": 1, "sphere": {"radius": 1}}], "outputs": )" +
+                  outputs + "}");
 }
 
 /// Why the files of a run or study are refused beside others that are written; empty if they are
@@ -49,9 +48,9 @@ std::string message(const Scene& scene, const Options& options,
 TEST_CASE("a snapshot's file holds each particle once, in the order of ids", "[particles]") {
   const Snapshot snapshot{7, {{3, {1, 2, 3}, {4, 5, 6}}, {9, {0.5, 0, -1}, {}}}};
   const std::string file = vtp(snapshot);
-  CHECK(file.find("NumberOfPoints=\"2\"") != std::string::npos);
-  CHECK(file.find("format=\"ascii\">\n3\n9\n<") != std::string::npos);
-  CHECK(file.find("format=\"ascii\">\n1 2 3\n0.5 0 -1\n<") != std::string::npos);
+  CHECK_THAT(file, Contains("NumberOfPoints=\"2\""));
+  CHECK_THAT(file, Contains("format=\"ascii\">\n3\n9\n<"));
+  CHECK_THAT(file, Contains("format=\"ascii\">\n1 2 3\n0.5 0 -1\n<"));
 }
 
 TEST_CASE("contours lie where the values say, closed, and around holes the other way",
@@ -85,8 +84,7 @@ TEST_CASE("a cut through a field draws the surface where it is", "[particles]") 
   const Scene scene =
       with_object(R"({"shape": {"sphere": {"radius": 1}}, "resolution": 24, "thickness": 1})");
   const auto field = build_alone(scene.objects[0], tess::dn::Content::distance_and_normal);
-  const std::string svg = slice_svg(field, 2, 0);
-  const std::string line = "stroke-width=\"1.5\" d=\"";
+  const std::string svg = slice_svg(field, 2, 0), line = "stroke-width=\"1.5\" d=\"";
   REQUIRE(count(svg, line) == 1);
   std::string path = svg.substr(svg.find(line) + line.size());
   path = path.substr(0, path.find('Z'));
@@ -135,14 +133,14 @@ TEST_CASE("vertices that no triangle uses are neither in the arena nor in the pi
   const tess::test::Scratch scratch;
   const std::string mesh =
       "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
-  const auto scene_of = [&](const char* name, const std::string& more) {
+  const auto with_more = [&](const char* name, const std::string& more) {
     const std::string file = scratch.write(name, mesh + more);
-    return parse_scene(R"({"dt": 0.01, "steps": 1, "objects": [{"shape": {"file": ")" + file +
-                           R"("}}], "emitters": [{"count": 1,
-                           "surface": {"object": 0, "low": 0.1, "high": 0.3}}]})",
-                       "scene.json");
+    return scene_of(R"({"dt": 0.01, "steps": 1, "objects": [{"shape": {"file": ")" + file +
+                    R"("}}], "emitters": [{"count": 1,
+                           "surface": {"object": 0, "low": 0.1, "high": 0.3}}]})");
   };
-  const Scene kept = scene_of("kept.obj", ""), stray = scene_of("stray.obj", "v 1000 1000 1000\n");
+  const Scene kept = with_more("kept.obj", ""),
+              stray = with_more("stray.obj", "v 1000 1000 1000\n");
   const tess::dn::Bounds box = Source(kept).bounds(), same = Source(stray).bounds();
   CHECK((same.low == box.low && same.high == box.high));
   const std::vector<Snapshot> snapshots{{0, {{0, {}, {}}}}, {1, {{0, {1, 1, 0}, {}}}}};
@@ -159,26 +157,25 @@ TEST_CASE("a picture of paths has axes, times, and the outline of what moves", "
   };
   // 175 pixels per unit: the left side goes from 169 to 239.0.
   const std::string moved = picture("[0.4, 0, 0]"), still = picture("[0, 0, 0]");
-  CHECK(moved.find("239.0 ") != std::string::npos);
-  CHECK(moved.find("outline: t = 1<") != std::string::npos);
-  CHECK(still.find("239.0 ") == std::string::npos);
-  CHECK(still.find("169.0 ") != std::string::npos);
-  CHECK(still.find("outline") == std::string::npos);
+  CHECK_THAT(moved, Contains("239.0 "));
+  CHECK_THAT(moved, Contains("outline: t = 1<"));
+  CHECK_THAT(still, !Contains("239.0 "));
+  CHECK_THAT(still, Contains("169.0 "));
+  CHECK_THAT(still, !Contains("outline"));
   for (const char* label : {">t = 0<", ">t = 0.5<", ">t = 1<", ">x<", ">y<", ">-1<", ">0.5<"})
-    CHECK(still.find(label) != std::string::npos);
-  CHECK(still.find(">z<") == std::string::npos);
+    CHECK_THAT(still, Contains(label));
+  CHECK_THAT(still, !Contains(">z<"));
   // Two pieces of the path in two colours, and a dot for each of three times.
   CHECK(count(still, "stroke-opacity") == 2);
   CHECK(count(still, "h0\"") == 3);
   const std::string twice = picture("[0, 0, 0]", R"({"axis": ["z", "x"]})");
   CHECK(count(twice, "<clipPath") == 2);
-  CHECK(twice.find(">z<") != std::string::npos);
+  CHECK_THAT(twice, Contains(">z<"));
 }
 
 TEST_CASE("particles that start at one point have a picture with distinct labels", "[particles]") {
   const Scene scene =
-      parse_scene(R"({"dt": 1, "steps": 2, "emitters": [{"count": 1, "sphere": {"radius": 0}}]})",
-                  "scene.json");
+      scene_of(R"({"dt": 1, "steps": 2, "emitters": [{"count": 1, "sphere": {"radius": 0}}]})");
   const auto labels = [&](double start, double second, double step) {
     std::vector<Snapshot> snapshots;
     for (int i = 0; i < 3; ++i) {
@@ -186,8 +183,8 @@ TEST_CASE("particles that start at one point have a picture with distinct labels
       snapshots.push_back({i, {{0, {x, 0, 0}, {}}, {1, {x + second, 0, 0}, {}}}});
     }
     const std::string svg = paths_svg(scene, snapshots);
-    CHECK(svg.find("inf") == std::string::npos);
-    CHECK(svg.find("nan") == std::string::npos);
+    CHECK_THAT(svg, !Contains("inf"));
+    CHECK_THAT(svg, !Contains("nan"));
     const std::string begin = "text-anchor=\"middle\">";
     std::vector<std::string> found;  // along x, and the axis's name
     for (std::size_t at = 0; (at = svg.find(begin, at)) != std::string::npos;) {
@@ -231,18 +228,18 @@ TEST_CASE("a run replaces none of the files that it reads or writes", "[particle
     CAPTURE(file);
     options.study = std::string_view(file).starts_with("study");
     scene.objects[0].field = out + "/./" + file;
-    CHECK_THAT(refusal(), Catch::Contains("would overwrite objects[0].field"));
+    CHECK_THAT(refusal(), Contains("would overwrite objects[0].field"));
     scene.objects[0].field.clear();
     scene.objects[0].file = out + "/" + file;
-    CHECK_THAT(refusal(), Catch::Contains("would overwrite objects[0].shape.file"));
+    CHECK_THAT(refusal(), Contains("would overwrite objects[0].shape.file"));
     scene.objects[0].file.clear();
     json = out + "/" + file;
-    CHECK_THAT(refusal(), Catch::Contains("would overwrite --json"));
+    CHECK_THAT(refusal(), Contains("would overwrite --json"));
     json.clear();
-    CHECK_THAT(refusal(out + "/" + file), Catch::Contains("would overwrite --trace"));
+    CHECK_THAT(refusal(out + "/" + file), Contains("would overwrite --trace"));
   }
   scene.objects[0].field = json = scratch.path("field.dnf");
-  CHECK_THAT(refusal(), Catch::Contains("would overwrite objects[0].field"));
+  CHECK_THAT(refusal(), Contains("would overwrite objects[0].field"));
   json.clear();
   CHECK(refusal(scratch.path("trace.json")).empty());
 }
@@ -256,8 +253,8 @@ TEST_CASE("the mesh that a scene reads is not overwritten", "[particles]") {
   const auto refusal = [&](const std::string& json, const std::string& trace) {
     return message(scene, {}, {{"--json", json}, {"--trace", trace}});
   };
-  CHECK_THAT(refusal(mesh, ""), Catch::Contains("would overwrite objects[0].shape.file"));
-  CHECK_THAT(refusal("", mesh), Catch::Contains("would overwrite objects[0].shape.file"));
+  CHECK_THAT(refusal(mesh, ""), Contains("would overwrite objects[0].shape.file"));
+  CHECK_THAT(refusal("", mesh), Contains("would overwrite objects[0].shape.file"));
   CHECK(refusal(scratch.path("other.obj"), "").empty());
 }
 
@@ -276,8 +273,7 @@ TEST_CASE("a file that cannot be written is refused before the run", "[particles
     options.study = std::string_view(file).starts_with("study");
     const std::string taken = options.out + "/" + file;
     std::filesystem::create_directories(taken);
-    CHECK_THAT(message(scene, options),
-               Catch::Contains(taken + ": cannot be written: is a directory"));
+    CHECK_THAT(message(scene, options), Contains(taken + ": cannot be written: is a directory"));
     std::filesystem::remove(taken);
   }
   // Names that this run does not write.

@@ -7,8 +7,8 @@
 #include "apps/particles/simulation/simulate.hpp"
 #include "runtime/runtime.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/run.hpp"
 
-#include <array>
 #include <memory>
 #include <string>
 
@@ -21,12 +21,13 @@ struct Ran {
   [[nodiscard]] const Measured& last() const { return result.rows.back().measured; }
 };
 
+inline Scene scene_of(const std::string& text) {
+  return parse_scene(text, "scene.json");
+}
+
 /// option: "--pes=2", "--sim=pes=4,seed=3".
 inline Ran run_scene(Scene scene, const std::string& option, const RunOptions& how = {}) {
-  std::string name = "test", argument = option;
-  std::array<char*, 3> argv{name.data(), argument.data(), nullptr};
-  int argc = 2;
-  tess::Setup setup = tess::take_options(argc, argv.data());
+  tess::Setup setup = tests::setup_of(option);
   Ran ran{std::make_shared<Stage>(std::move(scene)), {}};
   const auto main = [&]() -> tess::Task {
     co_await simulate(ran.stage, ran.result, how);

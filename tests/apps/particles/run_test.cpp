@@ -13,7 +13,7 @@ namespace {
 /// Two masses, two objects of which one moves and spins and one shrinks, every kind of rule, an
 /// explosion that begins and ends within steps.
 Scene lively_scene() {
-  return parse_scene(R"({"dt": 0.01, "steps": 40,
+  return scene_of(R"({"dt": 0.01, "steps": 40,
     "objects": [{"shape": {"sphere": {"radius": 0.5, "rings": 8}}, "resolution": 20, "thickness": 0.3,
                  "motion": {"velocity": [0.2, 0, 0], "spin": [0, 2, 1]}},
                 {"shape": {"box": {"half": [1, 1, 0.2]}}, "resolution": 16, "thickness": 0.4,
@@ -26,8 +26,7 @@ Scene lively_scene() {
               "surface_flow": {"alpha_in": 5, "alpha_out": -2, "distance": 0.2},
               "air_drag": {"rate": 0.1, "law": "quadratic"},
               "explosions": [{"centre": [0, 0, -0.5], "strength": 50, "radius": 2, "start": 0.123, "duration": 0.0571}]},
-    "outputs": {"statistics": 15, "trajectories": 20, "traced": 30, "audit": false}})",
-                     "scene.json");
+    "outputs": {"statistics": 15, "trajectories": 20, "traced": 30, "audit": false}})");
 }
 
 void check_same(const Ran& ran, const Ran& first) {
@@ -107,12 +106,11 @@ TEST_CASE("a run gives the same bits on any PEs, under any schedule and any cut 
 TEST_CASE("a block ends when it is empty and is made again by a particle that enters",
           "[particles][run]") {
   // One particle to and fro between two walls, through ten blocks.
-  const Scene scene = parse_scene(R"({"dt": 0.1, "steps": 200, "block": 0.2, "exchange": 1,
+  const Scene scene = scene_of(R"({"dt": 0.1, "steps": 200, "block": 0.2, "exchange": 1,
     "objects": [{"shape": {"boxes": [{"low": [-2, -1, -1], "high": [-1, 1, 1]}, {"low": [1, -1, -1], "high": [2, 1, 1]}]},
                  "resolution": 40, "thickness": 0.5}],
     "emitters": [{"lattice": {"low": [0, 0, 0], "high": [0, 0, 0], "n": [1, 1, 1]}, "velocity": [1.05, 0, 0]}],
-    "rules": {"impact": {"restitution": 1}}, "outputs": {"statistics": 1, "audit": true}})",
-                                  "scene.json");
+    "rules": {"impact": {"restitution": 1}}, "outputs": {"statistics": 1, "audit": true}})");
   for (const char* option : {"--pes=2", "--sim=pes=4,seed=5,migrate=0.2"}) {
     const Ran ran = run_scene(scene, option);
     REQUIRE(ran.result.rows.size() == 201);
@@ -127,10 +125,9 @@ TEST_CASE("a block ends when it is empty and is made again by a particle that en
 
 TEST_CASE("the column of blocks counts blocks, not looks at them", "[particles][run]") {
   // At rest, one particle in each of eight blocks.
-  const Scene scene = parse_scene(R"({"dt": 0.1, "steps": 60, "block": 1,
+  const Scene scene = scene_of(R"({"dt": 0.1, "steps": 60, "block": 1,
     "emitters": [{"lattice": {"low": [0.5, 0.5, 0.5], "high": [1.5, 1.5, 1.5], "n": [2, 2, 2]}}],
-    "outputs": {"statistics": 30, "trajectories": 2}})",
-                                  "scene.json");
+    "outputs": {"statistics": 30, "trajectories": 2}})");
   const Ran ran = run_scene(scene, "--pes=2");
   REQUIRE(ran.result.rows.size() == 3);
   CHECK(ran.result.trajectories.size() == 31);
@@ -139,10 +136,9 @@ TEST_CASE("the column of blocks counts blocks, not looks at them", "[particles][
 
 TEST_CASE("an energy beyond all doubles is not reported as none", "[particles][run]") {
   // All numbers are allowed, but not the velocities that come of them.
-  const Scene scene = parse_scene(R"({"dt": 1e60, "steps": 2,
+  const Scene scene = scene_of(R"({"dt": 1e60, "steps": 2,
     "emitters": [{"count": 3, "box": {"low": [0, 0, 0], "high": [1, 1, 1]}}],
-    "rules": {"gravity": [0, 0, -1e100]}})",
-                                  "scene.json");
+    "rules": {"gravity": [0, 0, -1e100]}})");
   const Measured begin = run_scene(scene, "--pes=2").result.rows.front().measured;
   const Measured end = run_scene(scene, "--pes=2").last();
   CHECK(begin.energy() == Approx(1.5e100).epsilon(1));
@@ -179,10 +175,9 @@ TEST_CASE("a run gives the same bits under every strategy",
 
 TEST_CASE("a balancer spreads blocks that are born on one PE", "[particles][run][balance]") {
   // All particles begin in one block, and fly apart.
-  Scene scene = parse_scene(R"({"dt": 0.01, "steps": 80, "block": 0.25, "exchange": 4,
+  Scene scene = scene_of(R"({"dt": 0.01, "steps": 80, "block": 0.25, "exchange": 4,
     "emitters": [{"count": 4000, "sphere": {"radius": 0.01}, "outward": 2, "spread": 0.5}],
-    "rules": {"gravity": [0, 0, -1]}})",
-                            "scene.json");
+    "rules": {"gravity": [0, 0, -1]}})");
   RunOptions how;
   how.balance = tess::parse_balance("greedy");
   const Ran ran = run_scene(scene, "--sim=pes=4,cost=1us", how);

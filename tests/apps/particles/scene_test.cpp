@@ -7,17 +7,22 @@
 #include "collide/dn_field/shapes.hpp"
 #include "runtime/base/usable_memory.hpp"
 #include "runtime/core/error.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/scratch.hpp"
 
-#include <catch2/catch.hpp>
-
-#include <filesystem>
+#include <algorithm>
 #include <fstream>
 #include <string>
-#include <unistd.h>
 
 using namespace particles;
 
 namespace {
+
+/// With " for each '.
+std::string quoted(std::string text) {
+  std::ranges::replace(text, '\'', '"');
+  return text;
+}
 
 /// A small scene in which one piece of text is replaced.
 std::string scene_with(const std::string& what, const std::string& by) {
@@ -31,13 +36,14 @@ std::string scene_with(const std::string& what, const std::string& by) {
   return scene.replace(at, what.size(), by);
 }
 
+/// The message of the Error of `action`; `fine` if it throws none.
+template <class Action>
+std::string told_by(const Action& action, const std::string& fine = "accepted") {
+  const std::string message = tess::test::message_of(action);
+  return message.empty() ? fine : message;
+}
 std::string refusal(const std::string& text) {
-  try {
-    (void)parse_scene(text, "scene.json");
-  } catch (const tess::Error& error) {
-    return error.what();
-  }
-  return "accepted";
+  return told_by([&] { (void)parse_scene(text, "scene.json"); });
 }
 
 }  // namespace
@@ -45,94 +51,87 @@ std::string refusal(const std::string& text) {
 TEST_CASE("a bad scene is refused in one line that names the key, the value and what is allowed",
           "[particles][scene]") {
   const auto [what, by, message] = GENERATE(table<std::string, std::string, std::string>({
-      {"\"resolution\": 20", "\"resolution\": 0",
-       "objects[1].resolution: 0 is not within 4 … 1024"},
-      {"\"resolution\": 20", "\"resolution\": 2.5",
-       "objects[1].resolution: 2.5 is not a whole number"},
-      {"\"resolution\": 20", "\"resolutoin\": 20",
+      {"'resolution': 20", "'resolution': 0", "objects[1].resolution: 0 is not within 4 … 1024"},
+      {"'resolution': 20", "'resolution': 2.5", "objects[1].resolution: 2.5 is not a whole number"},
+      {"'resolution': 20", "'resolutoin': 20",
        "objects[1].resolutoin: unknown key; allowed here: shape"},
-      {"\"thickness\": 0.5", "\"blur\": {\"radius\": 2, \"rounds\": 3}",
-       "objects[1].blur: {\"radius\":2,\"rounds\":3} stands beside the exact method"},
-      {"\"thickness\": 0.5", "\"method\": \"potential\", \"blur\": {\"radius\": 5, \"rounds\": 3}",
+      {"'thickness': 0.5", "'blur': {'radius': 2, 'rounds': 3}",
+       "objects[1].blur: {'radius':2,'rounds':3} stands beside the exact method"},
+      {"'thickness': 0.5", "'method': 'potential', 'blur': {'radius': 5, 'rounds': 3}",
        "objects[1].blur.radius: 5 is not within 2 … 4"},
-      {"\"thickness\": 0.5", "\"field\": \"none.dnf\"",
+      {"'thickness': 0.5", "'field': 'none.dnf'",
        "objects[1].resolution: 20 stands beside a field from a file"},
-      {"\"resolution\": 20, \"thickness\": 0.5", "\"field\": \"none.dnf\"",
+      {"'resolution': 20, 'thickness': 0.5", "'field': 'none.dnf'",
        "objects[1].field: none.dnf: cannot be opened; give the path of a field file"},
-      {"\"thickness\": 0.5", "\"thickness\": 0", "objects[1].thickness: 0 is not above 0"},
-      {"\"thickness\": 0.5", "\"thickness\": 0.1",
+      {"'thickness': 0.5", "'thickness': 0", "objects[1].thickness: 0 is not above 0"},
+      {"'thickness': 0.5", "'thickness': 0.1",
        "objects[1].thickness: 0.1 is thinner than two cells"},
-      {"\"thickness\": 0.5", "\"method\": \"magic\"", "\"magic\" is not one of exact"},
-      {"\"thickness\": 0.5", "\"transform\": {\"scale\": 0}",
+      {"'thickness': 0.5", "'method': 'magic'", "'magic' is not one of exact"},
+      {"'thickness': 0.5", "'transform': {'scale': 0}",
        "objects[1].transform.scale: 0 is not above 0"},
-      {"\"thickness\": 0.5", "\"transform\": {\"matrix\": [[1, 0.5, 0], [0, 1, 0], [0, 0, 1]]}",
+      {"'thickness': 0.5", "'transform': {'matrix': [[1, 0.5, 0], [0, 1, 0], [0, 0, 1]]}",
        "objects[1].transform.matrix: [[1,0.5,0],[0,1,0],[0,0,1]] cannot be used: transform"},
-      {"\"thickness\": 0.5", "\"transform\": {\"matrix\": [[1, 0, 0], [0, 1, 0], [0, 0, -1]]}",
+      {"'thickness': 0.5", "'transform': {'matrix': [[1, 0, 0], [0, 1, 0], [0, 0, -1]]}",
        "mirrors the object"},
-      {"\"thickness\": 0.5", "\"motion\": {\"scale\": -20}",
+      {"'thickness': 0.5", "'motion': {'scale': -20}",
        "objects[1].motion.scale: -20 a second takes the scale from 1 to -1 in 10 steps of 0.01; it "
        "must stay above 0"},
-      {"\"thickness\": 0.5", "\"motion\": {\"grow\": 1}",
+      {"'thickness': 0.5", "'motion': {'grow': 1}",
        "objects[1].motion.grow: unknown key; allowed here: velocity, spin, scale"},
-      {"\"thickness\": 0.5", "\"thickness\": 0.5, \"thickness\": 1",
-       "key \"thickness\" stands twice"},
-      {"\"thickness\": 0.5", "\"choose\": {\"max_speed\": 1, \"detail\": 1}",
-       "stands beside resolution"},
-      {"{\"box\": {\"half\": [1, 1, 1]}}", "{\"box\": {\"half\": [1, 1]}}",
+      {"'thickness': 0.5", "'thickness': 0.5, 'thickness': 1", "key 'thickness' stands twice"},
+      {"'thickness': 0.5", "'choose': {'max_speed': 1, 'detail': 1}", "stands beside resolution"},
+      {"{'box': {'half': [1, 1, 1]}}", "{'box': {'half': [1, 1]}}",
        "objects[0].shape.box.half: [1,1] is not a list of three numbers"},
-      {"{\"box\": {\"half\": [1, 1, 1]}}", "{}", "needs exactly one of sphere, box"},
-      {"{\"box\": {\"half\": [1, 1, 1]}}", "{\"file\": \"none.obj\"}",
+      {"{'box': {'half': [1, 1, 1]}}", "{}", "needs exactly one of sphere, box"},
+      {"{'box': {'half': [1, 1, 1]}}", "{'file': 'none.obj'}",
        "scene.json: objects[0].shape.file: none.obj: cannot be opened"},
-      {"{\"box\": {\"half\": [1, 1, 1]}}", "{\"file\": \"/dev/zero\"}",
+      {"{'box': {'half': [1, 1, 1]}}", "{'file': '/dev/zero'}",
        "/dev/zero: is no surface by its name; give a file .obj, .ply or .stl"},
-      {"{\"box\": {\"half\": [1, 1, 1]}}", "{\"file\": \".\"}",
+      {"{'box': {'half': [1, 1, 1]}}", "{'file': '.'}",
        "scene.json: objects[0].shape.file: .: is a directory; give the path of a file .obj, .ply "
        "or .stl"},
-      {"\"count\": 5, ", "", "emitters[0].count: is missing; give how many particles"},
-      {"\"count\": 5", "\"count\": -1", "emitters[0].count: -1 is not within 1 … 1000000000"},
-      {"\"count\": 5", "\"count\": 5, \"mass\": 0", "emitters[0].mass: 0 is not above 0"},
-      {"\"count\": 5", "\"count\": 5, \"seed\": -1",
+      {"'count': 5, ", "", "emitters[0].count: is missing; give how many particles"},
+      {"'count': 5", "'count': -1", "emitters[0].count: -1 is not within 1 … 1000000000"},
+      {"'count': 5", "'count': 5, 'mass': 0", "emitters[0].mass: 0 is not above 0"},
+      {"'count': 5", "'count': 5, 'seed': -1",
        "emitters[0].seed: -1 is not within 0 … 9007199254740992"},
-      {"\"count\": 5", "\"count\": 5, \"outward\": 1",
+      {"'count': 5", "'count': 5, 'outward': 1",
        "emitters[0].outward: 1 has no direction in a box"},
-      {"\"restitution\": 0.7", "\"restitution\": 1.5",
+      {"'restitution': 0.7", "'restitution': 1.5",
        "rules.impact.restitution: 1.5 is not within 0 … 1"},
-      {"\"restitution\": 0.7", "\"restitution\": 1, \"threshold\": 0.6",
+      {"'restitution': 0.7", "'restitution': 1, 'threshold': 0.6",
        "objects[0].thickness: 0.5 times scale 1 is below the distance 0.6"},
-      {"\"restitution\": 0.7}",
-       "\"restitution\": 1}, \"spring\": {\"stiffness\": 1, \"reach\": 0.1, \"damping\": 5}",
+      {"'restitution': 0.7}",
+       "'restitution': 1}, 'spring': {'stiffness': 1, 'reach': 0.1, 'damping': 5}",
        "rules.spring.damping is 5"},
-      {"\"restitution\": 0.7}",
-       "\"restitution\": 1, \"sweep\": false}, \"wind\": {\"velocity\": [0, 0, 1]}",
+      {"'restitution': 0.7}", "'restitution': 1, 'sweep': false}, 'wind': {'velocity': [0, 0, 1]}",
        "rules.wind.rate: is missing"},
-      {"\"high\": [3, 3, 3]}", "\"high\": [3, 3, 3]}, \"velocity\": [0, \"fast\", 0]",
-       "emitters[0].velocity[1]: \"fast\" is not a number"},
-      {"\"dt\": 0.01", "\"dt\": 1e999", "is not JSON"},
-      {"\"dt\": 0.01", "\"dt\": 1e101", "scene.json: dt: 1e+101 is beyond ±1e+100, the largest"},
-      {"\"dt\": 0.01", "\"dt\": 1e-101", "scene.json: dt: 1e-101 is below 1e-100, the least"},
-      {"\"low\": [2, 2, 2]", "\"low\": [-1e308, 2, 2]",
+      {"'high': [3, 3, 3]}", "'high': [3, 3, 3]}, 'velocity': [0, 'fast', 0]",
+       "emitters[0].velocity[1]: 'fast' is not a number"},
+      {"'dt': 0.01", "'dt': 1e999", "is not JSON"},
+      {"'dt': 0.01", "'dt': 1e101", "scene.json: dt: 1e+101 is beyond ±1e+100, the largest"},
+      {"'dt': 0.01", "'dt': 1e-101", "scene.json: dt: 1e-101 is below 1e-100, the least"},
+      {"'low': [2, 2, 2]", "'low': [-1e308, 2, 2]",
        "scene.json: emitters[0].box.low[0]: -1e+308 is beyond ±1e+100"},
       {"[0, 0, -9.81]", "[0, 0, -1e300]", "rules.gravity[2]: -1e+300 is beyond ±1e+100"},
-      {"\"restitution\": 0.7}",
-       "\"restitution\": 1}, \"wind\": {\"velocity\": [1e200, 0, 0], \"rate\": 1e200}",
+      {"'restitution': 0.7}",
+       "'restitution': 1}, 'wind': {'velocity': [1e200, 0, 0], 'rate': 1e200}",
        "rules.wind.velocity[0]: 1e+200 is beyond"},
-      {"\"thickness\": 0.5",
-       "\"transform\": {\"matrix\": [[1e200, 0, 0], [0, 1e200, 0], [0, 0, 1e200]]}",
+      {"'thickness': 0.5", "'transform': {'matrix': [[1e200, 0, 0], [0, 1e200, 0], [0, 0, 1e200]]}",
        "objects[1].transform.matrix[0][0]: 1e+200 is beyond"},
-      {"\"thickness\": 0.5", "\"transform\": {\"scale\": 1e100}",
+      {"'thickness': 0.5", "'transform': {'scale': 1e100}",
        "objects[1]: a cell in the world, at its smallest is 1.57895e+99, not within 1e-15 … 1e+15"},
-      {"\"thickness\": 0.5",
-       "\"motion\": {\"velocity\": [0, 1e100, 0]}, \"transform\": {\"position\": [9.9e99, 0, 0]}",
+      {"'thickness': 0.5",
+       "'motion': {'velocity': [0, 1e100, 0]}, 'transform': {'position': [9.9e99, 0, 0]}",
        "objects[1]: a cell of its field is 0.157895 wide in the world, and positions 1.09e+100 "
-       "from "
-       "the origin, where it gets, are"},
-      {"\"dt\": 0.01, ", "", "dt: is missing; give the time step"},
-      {"\"steps\": 10", "\"steps\": -1", "steps: -1 is not within 0 … 1000000000"},
-      {"\"dt\": 0.01, ", "\"dt\": 0.01 ", "is not JSON: parse error at line 1"},
+       "from the origin, where it gets, are"},
+      {"'dt': 0.01, ", "", "dt: is missing; give the time step"},
+      {"'steps': 10", "'steps': -1", "steps: -1 is not within 0 … 1000000000"},
+      {"'dt': 0.01, ", "'dt': 0.01 ", "is not JSON: parse error at line 1"},
   }));
-  const std::string told = refusal(scene_with(what, by));
+  const std::string told = refusal(scene_with(quoted(what), quoted(by)));
   INFO(told);
-  CHECK(told.find(message) != std::string::npos);
+  CHECK_THAT(told, Contains(quoted(message)));
   CHECK(told.find("scene.json: ") == 0);
   CHECK(told.find('\n') == std::string::npos);
 }
@@ -170,10 +169,8 @@ TEST_CASE("keys and values are shown in one line, and cut between characters",
 }
 
 TEST_CASE("errors of an OBJ file name the scene, the key and the file", "[particles][scene]") {
-  const auto folder =
-      std::filesystem::temp_directory_path() / ("scene_test_" + std::to_string(::getpid()));
-  std::filesystem::create_directory(folder);
-  const std::string start = "v 0 0 0\nv 1 0 0\n", path = (folder / "mesh.obj").string();
+  const tess::test::Scratch scratch;
+  const std::string start = "v 0 0 0\nv 1 0 0\n", path = scratch.path("mesh.obj");
   const auto [third, message] = GENERATE(table<std::string, std::string>({
       {"v nan 1 0\nf 1 2 3\n", "vertex 2 of triangle 0 is (nan, 1, 0), which is not finite"},
       {"v 0 1e400 0\nf 1 2 3\n", "vertex 2 of triangle 0 is (0, inf, 0), which is not finite"},
@@ -183,20 +180,13 @@ TEST_CASE("errors of an OBJ file name the scene, the key and the file", "[partic
       {"v 0 1 0\nf 1 2 9\n", "names vertex 9"},
       {"", "holds no faces"},
   }));
-  std::ofstream(path) << start << third;
-  const std::string scene = (folder / "scene.json").string();
-  std::ofstream(scene) << scene_with("{\"box\": {\"half\": [1, 1, 1]}}",
-                                     "{\"file\": \"mesh.obj\"}");
-  std::string told = "accepted";
-  try {
-    (void)read_scene(scene);
-  } catch (const tess::Error& error) {
-    told = error.what();
-  }
-  std::filesystem::remove_all(folder);
+  (void)scratch.write("mesh.obj", start + third);
+  const std::string scene = scratch.write(
+      "scene.json", scene_with("{\"box\": {\"half\": [1, 1, 1]}}", "{\"file\": \"mesh.obj\"}"));
+  const std::string told = told_by([&] { (void)read_scene(scene); });
   INFO(told);
   CHECK(told.find(scene + ": objects[0].shape.file: " + path + ":") == 0);
-  CHECK(told.find(message) != std::string::npos);
+  CHECK_THAT(told, Contains(message));
 }
 
 TEST_CASE("a directory is named as one", "[particles][scene]") {
@@ -209,8 +199,8 @@ TEST_CASE("without swept look-up a step that passes the field is refused", "[par
   CHECK(refusal(text) == "accepted");
   const std::string swept = "\"restitution\": 0.7";
   text.replace(text.find(swept), swept.size(), swept + ", \"sweep\": false");
-  CHECK(refusal(text).find("emitters[0]: speed 100 times dt 0.01 passes the field of objects[0]") !=
-        std::string::npos);
+  CHECK_THAT(refusal(text),
+             Contains("emitters[0]: speed 100 times dt 0.01 passes the field of objects[0]"));
 }
 
 TEST_CASE("without swept look-up the speed of a surface counts from the origin that it turns about",
@@ -225,12 +215,13 @@ TEST_CASE("without swept look-up the speed of a surface counts from the origin t
   // 0.03 radians in a step, at a distance of 1.7 and of 102.
   CHECK(refused(box + R"(-1, -1, -1], "high": [1, 1, 1]}]}, "motion": {"spin": [0, 0, 3]})") ==
         "accepted");
-  CHECK(refused(box + R"(100, -1, -1], "high": [102, 1, 1]}]}, "motion": {"spin": [0, 0, 3]})")
-            .find("passes the field of objects[0]") != std::string::npos);
+  CHECK_THAT(
+      refused(box + R"(100, -1, -1], "high": [102, 1, 1]}]}, "motion": {"spin": [0, 0, 3]})"),
+      Contains("passes the field of objects[0]"));
   CHECK(refused(ball + R"({"spin": [0, 0, 10]})") == "accepted");
   // It has three times its size at the end.
-  CHECK(refused(ball + R"({"spin": [0, 0, 10], "scale": 4})")
-            .find("passes the field of objects[0]") != std::string::npos);
+  CHECK_THAT(refused(ball + R"({"spin": [0, 0, 10], "scale": 4})"),
+             Contains("passes the field of objects[0]"));
 }
 
 TEST_CASE("a picture outside of the field is refused", "[particles][scene]") {
@@ -241,8 +232,9 @@ TEST_CASE("a picture outside of the field is refused", "[particles][scene]") {
         end + ", \"outputs\": {\"axis\": \"x\", \"slice\": {\"object\": 1, \"at\": " + at + "}}"));
   };
   CHECK(cut_at("1.4") == "accepted");
-  CHECK(cut_at("1.6").find("outputs.slice: {\"at\":1.6,\"object\":1} cuts at 1.6, which is not "
-                           "within the field: -1.5 … 1.5") != std::string::npos);
+  CHECK_THAT(cut_at("1.6"),
+             Contains("outputs.slice: {\"at\":1.6,\"object\":1} cuts at 1.6, which is not "
+                      "within the field: -1.5 … 1.5"));
 }
 
 TEST_CASE("a chosen field covers the step and resolves the detail, or is refused",
@@ -257,9 +249,9 @@ TEST_CASE("a chosen field covers the step and resolves the detail, or is refused
   CHECK(object.thickness == Approx(0.4));  // a step of 0.2, and two cells of 0.1
   CHECK(object.grid.cell <= 0.1 * (1 + 1e-12));
   CHECK(object.grid.cell > 0.09);
-  CHECK(refusal(scene("1e6"))
-            .find("objects[0].choose: {\"detail\":0.2,\"max_speed\":1000000.0} takes a "
-                  "resolution of ") != std::string::npos);
+  CHECK_THAT(refusal(scene("1e6")),
+             Contains("objects[0].choose: {\"detail\":0.2,\"max_speed\":1000000.0} takes a "
+                      "resolution of "));
 }
 
 TEST_CASE("bodies too thin for their field are refused where impacts or springs act",
@@ -279,19 +271,19 @@ TEST_CASE("bodies too thin for their field are refused where impacts or springs 
       "scene.json: objects[0].shape: 100 % of its surface is an open sheet, or a wall thinner than "
       "0.167232, which a field of 30 voxels needs; particles would pass it: take sides two, or a "
       "higher resolution");
-  CHECK(told(thin, "", bounce).find("particles would pass it") != std::string::npos);
+  CHECK_THAT(told(thin, "", bounce), Contains("particles would pass it"));
   CHECK(told(thin, R"(, "sides": "two")", bounce) == "accepted");
   // A spring that yields by more than the box's thickness lets particles through.
   const std::string spring = R"("spring": {"stiffness": 30, "reach": 0.1})";
-  CHECK(told(thin, "", spring).find("particles would pass it") != std::string::npos);
-  CHECK(told(plate, "", spring).find("is an open sheet") != std::string::npos);
+  CHECK_THAT(told(thin, "", spring), Contains("particles would pass it"));
+  CHECK_THAT(told(plate, "", spring), Contains("is an open sheet"));
   CHECK(told(thin, R"(, "sides": "two")", spring) == "accepted");
   CHECK(told(thin, "", R"("surface_drag": {"rate": 1, "threshold": 0.1})") == "accepted");
   const std::string wall = R"({"box": {"half": [1, 1, 0.1]}})";
   CHECK(told(wall, "", bounce) == "accepted");
   CHECK(told(wall, "", spring) == "accepted");
-  CHECK(told(wall, "", bounce + R"(, "look_up": "nearest")").find("particles would pass it") !=
-        std::string::npos);
+  CHECK_THAT(told(wall, "", bounce + R"(, "look_up": "nearest")"),
+             Contains("particles would pass it"));
 }
 
 TEST_CASE("units beyond the range of floats are refused", "[particles][scene]") {
@@ -302,68 +294,54 @@ TEST_CASE("units beyond the range of floats are refused", "[particles][scene]") 
   };
   for (const std::string fine : {"1e-12", "1", "1e12"})
     CHECK(refusal(scene(fine, "", "0.01")) == "accepted");
-  CHECK(refusal(scene("1e30", "", "1")).find("objects[0]: a cell of its field is ") !=
-        std::string::npos);
-  CHECK(
-      refusal(scene("1", R"(, "transform": {"scale": 1e-20})", "1")).find("in the world, at its") !=
-      std::string::npos);
-  CHECK(refusal(scene("1", "", "1e30")).find("a cell a step, as a speed,") != std::string::npos);
+  CHECK_THAT(refusal(scene("1e30", "", "1")), Contains("objects[0]: a cell of its field is "));
+  CHECK_THAT(refusal(scene("1", R"(, "transform": {"scale": 1e-20})", "1")),
+             Contains("in the world, at its"));
+  CHECK_THAT(refusal(scene("1", "", "1e30")), Contains("a cell a step, as a speed,"));
   const std::string far = R"(, "transform": {"position": [1e9, 0, 0]})";
   CHECK(refusal(scene("1e-3", far, "1")) == "accepted");
-  CHECK(refusal(scene("1e-6", far, "1")).find("from the origin, where it gets, are") !=
-        std::string::npos);
+  CHECK_THAT(refusal(scene("1e-6", far, "1")), Contains("from the origin, where it gets, are"));
 }
 
 TEST_CASE("a whole number may be written as 1e3", "[particles][scene]") {
   CHECK(parse_scene(scene_with("\"count\": 5", "\"count\": 1e3"), "s").n_particles() == 1000);
-  CHECK(refusal(scene_with("\"count\": 5", "\"count\": 1.5")).find("is not a whole number") !=
-        std::string::npos);
-  CHECK(
-      refusal(scene_with("\"count\": 5", "\"count\": 1e30")).find("is not within 1 … 1000000000") !=
-      std::string::npos);
+  CHECK_THAT(refusal(scene_with("\"count\": 5", "\"count\": 1.5")),
+             Contains("is not a whole number"));
+  CHECK_THAT(refusal(scene_with("\"count\": 5", "\"count\": 1e30")),
+             Contains("is not within 1 … 1000000000"));
 }
 
 TEST_CASE("a field from a file is that of its shape", "[particles][scene]") {
-  namespace fs = std::filesystem;
-  const fs::path folder = fs::temp_directory_path() / ("tess_field_" + std::to_string(getpid()));
-  fs::create_directories(folder);
+  const tess::test::Scratch scratch;
   const auto with_field = [&](const std::string& shape) {
     return "{\"dt\": 0.01, \"steps\": 1, \"objects\": [{\"shape\": " + shape +
            ", \"field\": \"a.dnf\"}], \"emitters\": [{\"count\": 1, \"sphere\": {\"radius\": 1}}]}";
   };
-  const auto read = [&](const std::string& text) -> std::string {
-    try {
-      const Scene scene = parse_scene(text, (folder / "scene.json").string());
-      const SceneObject& object = scene.objects.front();
-      return tess::text(object.grid.n[0], " ", object.thickness, " ",
-                        object.sides == tess::dn::Sides::two);
-    } catch (const tess::Error& error) {
-      return error.what();
-    }
+  const auto read = [&](const std::string& text) {
+    std::string found;
+    const std::string message = tess::test::message_of([&] {
+      const SceneObject object = parse_scene(text, scratch.path("scene.json")).objects.front();
+      found = tess::text(object.grid.n[0], " ", object.thickness, " ",
+                         object.sides == tess::dn::Sides::two);
+    });
+    return found + message;
   };
   const std::string box = R"({"box": {"half": [1, 1, 1]}})",
                     other = R"({"box": {"half": [1, 1, 1.2]}})";
   const tess::dn::Surface surface = tess::dn::make_box({1, 1, 1});
   tess::dn::save_field(build_field(surface, grid_around(bounds(surface), 16, 0.5),
                                    {tess::dn::Sides::two, tess::dn::Content::distance, 0.4, {}}),
-                       (folder / "a.dnf").string());
+                       scratch.path("a.dnf"));
   CHECK(read(with_field(box)) == "16 0.4 1");
-  CHECK(read(with_field(other))
-            .find("objects[0].field: " + (folder / "a.dnf").string() +
-                  ": is the field of another shape") != std::string::npos);
-  std::ofstream(folder / "a.dnf", std::ios::app) << "x";
-  CHECK(read(with_field(box)).find("a.dnf: longer than it says") != std::string::npos);
-  fs::remove_all(folder);
+  CHECK_THAT(read(with_field(other)), Contains("objects[0].field: " + scratch.path("a.dnf") +
+                                               ": is the field of another shape"));
+  std::ofstream(scratch.path("a.dnf"), std::ios::app) << "x";
+  CHECK_THAT(read(with_field(box)), Contains("a.dnf: longer than it says"));
 }
 
 TEST_CASE("fields and particles that no memory can hold are refused", "[particles][scene]") {
-  const auto refused = [](const Scene& scene, int n_processes) -> std::string {
-    try {
-      check_memory(scene, n_processes);
-    } catch (const tess::Error& error) {
-      return error.what();
-    }
-    return "fits";
+  const auto refused = [](const Scene& scene, int n_processes) {
+    return told_by([&] { check_memory(scene, n_processes); }, "fits");
   };
   Scene scene = parse_scene(scene_with("\"steps\": 10", "\"steps\": 1000000000"), "scene.json");
   CHECK(refused(scene, 1) == "fits");
@@ -377,7 +355,7 @@ TEST_CASE("fields and particles that no memory can hold are refused", "[particle
   Scene fields = scene;
   fields.objects[0].grid.n = {1024, 1024, 1024};
   fields.objects.assign(1000, fields.objects[0]);  // 8.6 TB
-  CHECK(refused(fields, 1).find("a lower resolution") != std::string::npos);
+  CHECK_THAT(refused(fields, 1), Contains("a lower resolution"));
   fields.rules = {};  // no rule needs a field
   CHECK(refused(fields, 1) == "fits");
 }
@@ -427,8 +405,9 @@ TEST_CASE("forces act by mass, gravity does not", "[particles][scene]") {
   CHECK(heavy.explosions[0].radius == 4);
   rules.air_drag->law = tess::dn::DragLaw::quadratic;
   CHECK(for_mass(rules, 2).air_drag->rate == 3);
-  CHECK(scene_help().find("Stiffness, damping, rates, alphas and strength are of forces: they are "
-                          "divided by") != std::string::npos);
+  CHECK_THAT(scene_help(),
+             Contains("Stiffness, damping, rates, alphas and strength are of forces: they are "
+                      "divided by"));
 }
 
 TEST_CASE("emitted particles lie where their emitter says", "[particles][scene]") {

@@ -33,10 +33,9 @@ TEST_CASE("exact bounces lie on the surface and mirror the velocity", "[particle
 
 TEST_CASE("the study of a mesh far from the origin has the errors of the mesh at the origin",
           "[particles][study]") {
-  Scene scene = parse_scene(R"({"dt": 1, "steps": 0,
+  Scene scene = scene_of(R"({"dt": 1, "steps": 0,
     "objects": [{"shape": {"sphere": {"radius": 1, "rings": 30}}, "resolution": 24, "thickness": 1}],
-    "emitters": [{"count": 1, "sphere": {"radius": 1}}]})",
-                            "scene.json");
+    "emitters": [{"count": 1, "sphere": {"radius": 1}}]})");
   StudyOptions options;
   options.resolutions = {12};
   options.n_samples = 300;
@@ -69,11 +68,10 @@ TEST_CASE("a field from a file without normals is not studied", "[particles][stu
   save_field(build_field(ball, grid_around(bounds(ball), 24, 0.5),
                          {.content = Content::distance, .thickness = 0.5}),
              path);
-  const Scene scene = parse_scene(R"({"dt": 1, "steps": 0,
+  const Scene scene = scene_of(R"({"dt": 1, "steps": 0,
     "objects": [{"shape": {"sphere": {"radius": 1, "rings": 24}}, "field": ")" +
-                                      path + R"("}],
-    "emitters": [{"count": 1, "sphere": {"radius": 2}}]})",
-                                  "scene.json");
+                               path + R"("}],
+    "emitters": [{"count": 1, "sphere": {"radius": 2}}]})");
   StudyOptions options;
   options.resolutions = {12};
   options.n_samples = options.n_bounces = options.n_timed = 10;
@@ -83,10 +81,9 @@ TEST_CASE("a field from a file without normals is not studied", "[particles][stu
 
 TEST_CASE("the study finds the orders of the look-ups, and no particle lost where none may be",
           "[particles][study]") {
-  const Scene scene = parse_scene(R"({"dt": 1, "steps": 0,
+  const Scene scene = scene_of(R"({"dt": 1, "steps": 0,
     "objects": [{"shape": {"sphere": {"radius": 1, "rings": 30}}, "resolution": 24, "thickness": 1}],
-    "emitters": [{"count": 1, "sphere": {"radius": 1}}]})",
-                                  "scene.json");
+    "emitters": [{"count": 1, "sphere": {"radius": 1}}]})");
   StudyOptions options;
   options.resolutions = {12, 23};
   options.n_samples = 1000;
@@ -164,9 +161,9 @@ TEST_CASE("the study shows an order that is negative, and a dash for none", "[pa
   rows[1].order = -0.25;
   rows[1].relative = -0.0125;
   const std::string table = study_table(rows);
-  CHECK(table.find(" -0.25 ") != std::string::npos);
-  CHECK(table.find(" -0.0125\n") != std::string::npos);
-  CHECK(table.find(" -\n") != std::string::npos);
+  CHECK_THAT(table, Contains(" -0.25 "));
+  CHECK_THAT(table, Contains(" -0.0125\n"));
+  CHECK_THAT(table, Contains(" -\n"));
 }
 
 TEST_CASE("costs are the least of five runs, and CPU time does not count waiting",

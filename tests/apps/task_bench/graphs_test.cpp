@@ -24,8 +24,7 @@ Graph graph_of(const std::string& type, std::int32_t width, std::int64_t steps =
 
 /// Whether point `to` needs the output of point `from`, told from the paper's definition by itself.
 bool depends(const Graph& g, std::int32_t set, std::int32_t to, std::int32_t from) {
-  const std::int32_t w = g.width;
-  const std::int32_t ahead = ((from - to) % w + w) % w;
+  const std::int32_t w = g.width, ahead = ((from - to) % w + w) % w;
   switch (g.type) {
     case Type::trivial:
       return false;
@@ -166,18 +165,18 @@ TEST_CASE("the totals of a graph are those of its tasks one by one", "[task_benc
 TEST_CASE("graphs whose options do not fit each other are refused", "[task_bench]") {
   Graph g = graph_of("stencil_1d", 8);
   g.period = 2;
-  CHECK_THROWS_WITH(validate(g), Catch::Contains("stencil_1d has none"));
+  CHECK_THROWS_WITH(validate(g), Contains("stencil_1d has none"));
   g = graph_of("spread", 8);
   g.period = 4;
-  CHECK_THROWS_WITH(validate(g), Catch::Contains("at most 3"));
+  CHECK_THROWS_WITH(validate(g), Contains("at most 3"));
   g = graph_of("trivial", 8);
   g.kernel.type = KernelType::memory_bound;
-  CHECK_THROWS_WITH(validate(g), Catch::Contains("at least 256"));
+  CHECK_THROWS_WITH(validate(g), Contains("at least 256"));
   g.kernel = {};
   g.kernel.imbalance = 1;
-  CHECK_THROWS_WITH(validate(g), Catch::Contains("load_imbalance"));
-  CHECK_THROWS_WITH(parse_type("torus"), Catch::Contains("stencil_1d_periodic"));
-  CHECK_THROWS_WITH(parse_kernel("gemm"), Catch::Contains("busy_wait"));
+  CHECK_THROWS_WITH(validate(g), Contains("load_imbalance"));
+  CHECK_THROWS_WITH(parse_type("torus"), Contains("stencil_1d_periodic"));
+  CHECK_THROWS_WITH(parse_kernel("gemm"), Contains("busy_wait"));
 }
 
 TEST_CASE("inputs are complete when each dependence has its output, in any order", "[task_bench]") {
@@ -209,7 +208,7 @@ TEST_CASE("an output that stands for no dependence is refused", "[task_bench]") 
   CHECK_FALSE(inputs.put({0, -1}));
   CHECK_FALSE(inputs.put({-1, 3}));  // of a step that is over
   CHECK_FALSE(inputs.put({19, 3}));  // of the last step: nothing depends on it
-  CHECK(inputs.complaint({0, 6}).find("(step 0, point 6)") != std::string::npos);
+  CHECK_THAT(inputs.complaint({0, 6}), Contains("(step 0, point 6)"));
 }
 
 TEST_CASE("inputs of every graph run through as its tasks do, and again", "[task_bench]") {

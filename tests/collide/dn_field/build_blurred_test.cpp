@@ -57,10 +57,10 @@ TEST_CASE("a plate between two layers is refused by normals and served by potent
   const Surface plate = make_plate(1, 1);
   for (const int n : {20, 21}) {
     const Grid grid = grid_around(bounds(plate), n, 0.4);
-    CHECK(refusal([&] {
-            (void)build_field(plate, grid,
-                              {Sides::one, Content::distance_and_normal, 0.4, Method::normals, {}});
-          }).find("near-zero thickness") != std::string::npos);
+    CHECK_THROWS_WITH(
+        build_field(plate, grid,
+                    {Sides::one, Content::distance_and_normal, 0.4, Method::normals, {}}),
+        Contains("near-zero thickness"));
     const Field field = build_field(
         plate, grid, {Sides::two, Content::distance_and_normal, 0.4, Method::potential, {}});
     for (const int k : {n / 2 - 2, n / 2 + 2})
@@ -69,10 +69,9 @@ TEST_CASE("a plate between two layers is refused by normals and served by potent
   }
   const Grid away{{5, 5, 5}, 0.1, {8, 8, 8}};
   for (const Method method : {Method::normals, Method::potential})
-    CHECK(refusal([&] {
-            (void)build_field(make_box({1, 1, 1}), away,
-                              {Sides::one, Content::distance_and_normal, 0.4, method, {}});
-          }).find("no voxel of the grid") != std::string::npos);
+    CHECK_THROWS_WITH(build_field(make_box({1, 1, 1}), away,
+                                  {Sides::one, Content::distance_and_normal, 0.4, method, {}}),
+                      Contains("no voxel of the grid"));
 }
 
 /// The greatest and the mean angle to the exact normals of a sphere, in degrees, over all voxels
@@ -257,19 +256,19 @@ TEST_CASE("normals away from a box turn smoothly: less from voxel to voxel than 
 TEST_CASE("the normals method refuses objects of near-zero thickness", "[dn_field]") {
   const auto built = [](const Surface& surface, int n, Method method, Sides sides) {
     const Grid grid = grid_around(bounds(surface), n, 0.3);
-    return refusal([&] {
+    return message_of([&] {
       (void)build_field(surface, grid,
                         {sides, Content::distance_and_normal, 3 * grid.cell, method, {}});
     });
   };
-  CHECK(built(make_plate(1, 6), 24, Method::normals, Sides::one).find("near-zero thickness") !=
-        std::string::npos);
+  CHECK_THAT(built(make_plate(1, 6), 24, Method::normals, Sides::one),
+             Contains("near-zero thickness"));
   const Surface thin = make_box({1, 1, 0.01});
-  CHECK(built(thin, 24, Method::normals, Sides::one).find("potential") != std::string::npos);
+  CHECK_THAT(built(thin, 24, Method::normals, Sides::one), Contains("potential"));
   CHECK(built(thin, 24, Method::potential, Sides::two).empty());
   CHECK(built(make_box({1, 1, 0.5}), 24, Method::normals, Sides::one).empty());
-  CHECK(built(make_box({1, 1, 0.5}), 24, Method::normals, Sides::two).find("only one side") !=
-        std::string::npos);
+  CHECK_THAT(built(make_box({1, 1, 0.5}), 24, Method::normals, Sides::two),
+             Contains("only one side"));
 }
 
 TEST_CASE("a chosen blur reaches through the thickness, and one out of range is refused",
@@ -280,8 +279,8 @@ TEST_CASE("a chosen blur reaches through the thickness, and one out of range is 
     CHECK(blur.radius * blur.rounds * grid.cell >= std::min(thickness, 2.0));
     CHECK_NOTHROW(require_blur(blur));
   }
-  CHECK(refusal([&] { require_blur({5, 2}); }).find("2 to 4") != std::string::npos);
-  CHECK(refusal([&] { require_blur({3, 0}); }).find("at least one") != std::string::npos);
+  CHECK_THROWS_WITH(require_blur({5, 2}), Contains("2 to 4"));
+  CHECK_THROWS_WITH(require_blur({3, 0}), Contains("at least one"));
 }
 
 }  // namespace

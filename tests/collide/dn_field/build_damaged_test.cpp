@@ -43,8 +43,7 @@ Field field_of(const Surface& surface, const Grid& grid, Method method) {
 
 TEST_CASE("a closed mesh turned inside out is what it bounds, normals too", "[dn_field]") {
   const Surface ball = make_sphere(1, 20), core = make_sphere(0.5, 14);
-  const Surface shell = joined(ball, inverted(core));
-  const Surface two = joined(ball, core, {2, 0.3, 0.1});
+  const Surface shell = joined(ball, inverted(core)), two = joined(ball, core, {2, 0.3, 0.1});
   struct Case {
     Surface right, wrong;
   };
@@ -118,12 +117,12 @@ TEST_CASE("the normals method refuses an object without thickness, and flipped t
           "[dn_field]") {
   const auto refused = [](const Surface& surface) {
     const Grid grid = grid_around(bounds(surface), 30, 0.3);
-    return refusal([&] { (void)field_of(surface, grid, Method::normals); });
+    return message_of([&] { (void)field_of(surface, grid, Method::normals); });
   };
   const Surface ball = make_sphere(1, 24), plate = make_plate(1, 6);
   for (const Surface& bad :
        {plate, with_flipped(plate, 72), make_box({1, 1, 0.01}), with_share_flipped(ball, 0.45)})
-    CHECK(refused(bad).find("% of the surface has no inside behind it") != std::string::npos);
+    CHECK_THAT(refused(bad), Contains("% of the surface has no inside behind it"));
   CHECK(refused(ball).empty());
 }
 

@@ -196,11 +196,10 @@ TEST_CASE("bad surfaces and grids are refused with a reason", "[dn_field]") {
   CHECK_THROWS_AS(build_field({}, grid), tess::Error);
   Surface broken = make_box({1, 1, 1});
   broken.vertices[3].y = std::nan("");
-  CHECK(refusal([&] { (void)build_field(broken, grid); }).find("vertex 3") != std::string::npos);
+  CHECK_THROWS_WITH(build_field(broken, grid), Contains("vertex 3"));
   broken.vertices[3].y = 1;
   broken.triangles[0][0] = 99;
-  CHECK(refusal([&] { (void)build_field(broken, grid); }).find("vertex 99 of 8") !=
-        std::string::npos);
+  CHECK_THROWS_WITH(build_field(broken, grid), Contains("vertex 99 of 8"));
   CHECK_THROWS_AS(build_field(make_box({1, 1, 1}), grid, {Sides::one, Content::distance, 0.1, {}}),
                   tess::Error);
   CHECK_THROWS_AS(grid_around({{0, 0, 0}, {1, 1, 1}}, 100000, 0.1), tess::Error);

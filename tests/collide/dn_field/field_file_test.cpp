@@ -96,23 +96,21 @@ TEST_CASE("a file that is whole but holds no field that can be is refused", "[dn
     Field field = small_field(Content::distance);
     damage(field);
     save_field(field, file.path());
-    return refusal([&] { (void)load_field(file.path()); });
+    return message_of([&] { (void)load_field(file.path()); });
   };
   CHECK(told([](Field&) {}).empty());
-  CHECK(told([](Field& field) {
-          field.grid.n = {1 << 30, 1 << 30, 16};  // their product is 0 in 64 bits
-          field.distance.clear();
-        }).find("or of too many") != std::string::npos);
-  CHECK(told([](Field& field) { field.grid.n[1] = 0; }).find("without voxels") !=
-        std::string::npos);
-  CHECK(told([](Field& field) { field.grid.cell = HUGE_VAL; }).find("not finite") !=
-        std::string::npos);
-  CHECK(told([](Field& field) { field.grid.origin.y = std::nan(""); }).find("not finite") !=
-        std::string::npos);
-  CHECK(told([](Field& field) { field.thickness = std::nan(""); }).find("a thickness") !=
-        std::string::npos);
-  CHECK(told([](Field& field) { field.distance.pop_back(); }).find("another number of voxels") !=
-        std::string::npos);
+  CHECK_THAT(told([](Field& field) {
+               field.grid.n = {1 << 30, 1 << 30, 16};  // their product is 0 in 64 bits
+               field.distance.clear();
+             }),
+             Contains("or of too many"));
+  CHECK_THAT(told([](Field& field) { field.grid.n[1] = 0; }), Contains("without voxels"));
+  CHECK_THAT(told([](Field& field) { field.grid.cell = HUGE_VAL; }), Contains("not finite"));
+  CHECK_THAT(told([](Field& field) { field.grid.origin.y = std::nan(""); }),
+             Contains("not finite"));
+  CHECK_THAT(told([](Field& field) { field.thickness = std::nan(""); }), Contains("a thickness"));
+  CHECK_THAT(told([](Field& field) { field.distance.pop_back(); }),
+             Contains("another number of voxels"));
 }
 
 TEST_CASE("damage at any byte of a file is refused, and so is every truncation", "[dn_field]") {
@@ -122,7 +120,7 @@ TEST_CASE("damage at any byte of a file is refused, and so is every truncation",
   const std::string whole = file.bytes();
   const auto read = [&](const std::string& bytes) {
     std::istringstream stream(bytes);
-    return refusal([&] { (void)read_field(stream, "a file"); });
+    return message_of([&] { (void)read_field(stream, "a file"); });
   };
   REQUIRE(read(whole).empty());
   int accepted = 0;
@@ -136,7 +134,7 @@ TEST_CASE("damage at any byte of a file is refused, and so is every truncation",
   for (std::size_t length = 0; length < whole.size(); ++length)
     accepted += read(whole.substr(0, length)).find("truncated") == std::string::npos;
   CHECK(accepted == 0);
-  CHECK(read(whole + '\0').find("longer than it says") != std::string::npos);
+  CHECK_THAT(read(whole + '\0'), Contains("longer than it says"));
 }
 
 TEST_CASE("what is wrong with a file is named", "[dn_field]") {
@@ -146,29 +144,25 @@ TEST_CASE("what is wrong with a file is named", "[dn_field]") {
   const std::string whole = file.bytes();
   const auto loaded = [&](const std::string& bytes) {
     file.write(bytes);
-    return refusal([&] { (void)load_field(file.path()); });
+    return message_of([&] { (void)load_field(file.path()); });
   };
   std::string other = whole;
   other[8] = 1;
-  CHECK(loaded(other).find("version 1, this program reads 4") != std::string::npos);
-  CHECK(loaded("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n# an OBJ\n").find("no field file") !=
-        std::string::npos);
+  CHECK_THAT(loaded(other), Contains("version 1, this program reads 4"));
+  CHECK_THAT(loaded("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n# an OBJ\n"), Contains("no field file"));
   other = whole;
   other.back() = static_cast<char>(other.back() ^ 1);
-  CHECK(loaded(other).find("damaged") != std::string::npos);
-  CHECK(refusal([] { (void)load_field("no/such.dnf"); }).find("no/such.dnf: cannot be opened") !=
-        std::string::npos);
-  CHECK(refusal([&] { save_field(flat, "no/such/folder.dnf"); }).find("cannot be written") !=
-        std::string::npos);
+  CHECK_THAT(loaded(other), Contains("damaged"));
+  CHECK_THROWS_WITH(load_field("no/such.dnf"), Contains("no/such.dnf: cannot be opened"));
+  CHECK_THROWS_WITH(save_field(flat, "no/such/folder.dnf"), Contains("cannot be written"));
   Field odd = flat;
   odd.distance.pop_back();
   save_field(odd, file.path());
-  CHECK(refusal([&] { (void)load_field(file.path()); }).find("number of voxels") !=
-        std::string::npos);
+  CHECK_THROWS_WITH(load_field(file.path()), Contains("number of voxels"));
   odd = flat;
   odd.jump = -1;
   save_field(odd, file.path());
-  CHECK(refusal([&] { (void)load_field(file.path()); }).find("jump") != std::string::npos);
+  CHECK_THROWS_WITH(load_field(file.path()), Contains("jump"));
 }
 
 }  // namespace

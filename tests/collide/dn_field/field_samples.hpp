@@ -6,6 +6,7 @@
 #include "collide/dn_field/normal_code.hpp"
 #include "collide/dn_field/surface.hpp"
 #include "runtime/core/error.hpp"
+#include "tests/support/scratch.hpp"
 
 #include <algorithm>
 #include <numbers>
@@ -23,16 +24,7 @@ void for_each_voxel(const Grid& grid, const Visit& visit) {
       for (int i = 0; i < grid.n[0]; ++i) visit(grid.index(i, j, k), grid.centre(i, j, k));
 }
 
-/// The message with which `call` refuses its input; empty where it does not.
-template <class Call>
-std::string refusal(const Call& call) {
-  try {
-    call();
-  } catch (const tess::Error& error) {
-    return error.what();
-  }
-  return {};
-}
+using tess::test::message_of;
 
 inline Vec3 decoded(std::uint32_t code) {
   const Normal n = decode_normal(code);

@@ -48,9 +48,9 @@ TEST_CASE("a look-up in a field that was not built is refused", "[dn_field]") {
   const auto look = [&](LookUp kind) { look_up(field, kind, {x, x, x}, {.distance = found}); };
   for (const LookUp kind : {LookUp::nearest, LookUp::tangent, LookUp::trilinear}) {
     field = {};
-    CHECK_THROWS_WITH(look(kind), Catch::Contains("a field of 0 voxels with 0 distances"));
+    CHECK_THROWS_WITH(look(kind), Contains("a field of 0 voxels with 0 distances"));
     field.grid = {{0, 0, 0}, 1, {2, 2, 2}};
-    CHECK_THROWS_WITH(look(kind), Catch::Contains("a field of 8 voxels with 0 distances"));
+    CHECK_THROWS_WITH(look(kind), Contains("a field of 8 voxels with 0 distances"));
   }
 }
 

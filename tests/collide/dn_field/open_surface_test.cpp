@@ -55,7 +55,7 @@ TEST_CASE("the reach of a rule lies within the field minus the clearance of an o
   rules.spring = Spring{1, 0, 0.19};  // cells are 0.1 wide
   CHECK_NOTHROW(validate(rules, {&object, 1}));
   rules.spring->reach = 0.21;
-  CHECK_THROWS_WITH(validate(rules, {&object, 1}), Catch::Contains("only 0.2"));
+  CHECK_THROWS_WITH(validate(rules, {&object, 1}), Contains("only 0.2"));
 }
 
 }  // namespace

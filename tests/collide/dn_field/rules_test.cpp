@@ -6,23 +6,18 @@
 #include "collide/dn_field/shapes.hpp"
 #include "runtime/core/error.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/scratch.hpp"
 
 #include <array>
 
 namespace {
 
 using namespace tess::dn;
-using stability::flown;
-using stability::Particle;
+using stability::flown, stability::Particle;
 
 /// The message with which `rules` are refused; empty where they are not.
 std::string refusal(const Rules& rules) {
-  try {
-    validate(rules);
-  } catch (const tess::Error& error) {
-    return error.what();
-  }
-  return {};
+  return tess::test::message_of([&] { validate(rules); });
 }
 
 double kinetic_energy(const Particles& particles) {

@@ -35,8 +35,7 @@ inline Vec3 closest_on_triangle(Vec3 p, const std::array<Vec3, 3>& t) {
 /// Oosterom and Strackee 1983).
 inline double solid_angle(Vec3 p, const std::array<Vec3, 3>& t) {
   const Vec3 a = t[0] - p, b = t[1] - p, c = t[2] - p;
-  const double la = norm(a), lb = norm(b), lc = norm(c);
-  const double volume = dot(a, cross(b, c));
+  const double la = norm(a), lb = norm(b), lc = norm(c), volume = dot(a, cross(b, c));
   const double denominator = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb;
   return 2 * std::atan2(volume, denominator);
 }

@@ -45,7 +45,7 @@ int run_misuse(int argc, char** argv) {
   if (argc != 3) fail(ErrorCode::bad_argument, "give a place and a slack");
   const std::string where = argv[1];
   const double slack = std::stod(argv[2]);
-  return run(setup, [&]() -> Task { return misuse(where, slack); });
+  return run(setup, [&] { return misuse(where, slack); });
 }
 
 }  // namespace

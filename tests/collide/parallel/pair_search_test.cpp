@@ -5,6 +5,7 @@
 #include "runtime/runtime.hpp"
 #include "tests/support/capsule_of_box.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/run.hpp"
 
 #include <array>
 #include <fmt/format.h>
@@ -88,13 +89,6 @@ void check_received(const std::vector<std::uint64_t>& received, std::uint64_t n,
   }
 }
 
-Setup setup_with(std::string option) {
-  std::string name = "test";
-  std::array<char*, 3> argv{name.data(), option.data(), nullptr};
-  int argc = 2;
-  return take_options(argc, argv.data());
-}
-
 }  // namespace
 
 TEST_CASE("each pair of equal boxes is reported once, in portions",
@@ -106,10 +100,10 @@ TEST_CASE("each pair of equal boxes is reported once, in portions",
     for (const bool in_pieces : {false, true})
       for (const std::string& option : std::span(machines).first(in_pieces ? 2 : 4)) {
         const std::int32_t n = in_pieces ? 520 : 900;
-        Setup setup = setup_with(option);
+        Setup setup = tests::setup_of(option);
         std::vector<std::uint64_t> received;
         CAPTURE(option, in_pieces, within == WithinModel::test);
-        REQUIRE(run(setup, [&]() -> Task {
+        REQUIRE(run(setup, [&] {
                   return collide_crowds(n, in_pieces, Models::of_crowds, {Touching::counts, within},
                                         received);
                 }) == 0);
@@ -123,12 +117,11 @@ TEST_CASE("boxes with a model each are searched in as few portions",
   for (const std::string option :
        {"--pes=1", "--sim=pes=2,per-process=1,cost=100ns,migrate=0.1,seed=8"}) {
     constexpr std::int32_t n = 600;
-    Setup setup = setup_with(option);
+    Setup setup = tests::setup_of(option);
     std::vector<std::uint64_t> received;
     CAPTURE(option);
-    REQUIRE(run(setup, [&]() -> Task {
-              return collide_crowds(n, false, Models::of_boxes, {}, received);
-            }) == 0);
+    REQUIRE(run(setup, [&] { return collide_crowds(n, false, Models::of_boxes, {}, received); }) ==
+            0);
     check_received(received, n, WithinModel::test);
   }
 }

@@ -121,7 +121,7 @@ Task collide_needles(NeedleScene setting, NeedlePairs& outcome) {
 
 NeedlePairs outcome_of(const NeedleScene& setting, const test::Machine& machine) {
   NeedlePairs outcome;
-  machine.run([&]() -> Task { return collide_needles(setting, outcome); }).require_success();
+  machine.run([&] { return collide_needles(setting, outcome); }).require_success();
   return outcome;
 }
 
@@ -291,16 +291,16 @@ TEST_CASE("capsules are none or one per object, and pieces have a length",
   const std::vector<Capsule> capsules(2, Capsule{{0, 0, 0}, {1, 1, 1}, 1});
   ObjectList list;
   CHECK_THROWS_WITH(list.append(Objects{{}, {}, boxes, {}, capsules}, PeId{0}),
-                    Catch::Contains("2 capsules were submitted with 3 objects"));
+                    Contains("2 capsules were submitted with 3 objects"));
   const std::vector<Item> items{{boxes[0], {}}};
   CHECK_THROWS_WITH(list.append(items, capsules, PeId{0}),
-                    Catch::Contains("2 capsules were submitted with 1 objects"));
+                    Contains("2 capsules were submitted with 1 objects"));
   CHECK_THROWS_WITH(list.append(Objects{{}, {}, {}, {}, capsules}, PeId{0}),
-                    Catch::Contains("2 capsules were submitted with 0 objects"));
+                    Contains("2 capsules were submitted with 0 objects"));
   CHECK_THROWS_WITH(list.append(std::span<const Item>(), capsules, PeId{0}),
-                    Catch::Contains("2 capsules were submitted with 0 objects"));
+                    Contains("2 capsules were submitted with 0 objects"));
   CHECK(list.size() == 0);
   for (const double length : {-1.0, std::numeric_limits<double>::quiet_NaN()})
     CHECK_THROWS_WITH(make_collider({.piece_length = length}),
-                      Catch::Contains("give a positive length, infinity for whole objects"));
+                      Contains("give a positive length, infinity for whole objects"));
 }

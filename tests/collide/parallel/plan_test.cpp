@@ -102,7 +102,7 @@ TEST_CASE("objects over more than the range of a double are refused", "[collide]
   const Aabb small{{0, 0, 0}, {1, 1, 1}};
   CHECK(plan_of({small, {{-most / 4, 0, 0}, {most / 4, 1, 1}}}, 2).size[0] > 0);
   CHECK_THROWS_WITH(plan_of({small, {{-most, 0, 0}, {most, 1, 1}}}, 2),
-                    Catch::Contains("scale them down"));
+                    Contains("scale them down"));
 }
 
 TEST_CASE("objects that are a little too large for the voxels have no level of their own",

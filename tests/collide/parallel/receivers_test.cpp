@@ -2,8 +2,8 @@
 #include "collide/collider.hpp"
 #include "collide/parallel/object_list.hpp"
 #include "runtime/runtime.hpp"
-#include "runtime/wire/machine/threads.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/run.hpp"
 
 #include <algorithm>
 #include <array>
@@ -41,18 +41,11 @@ class Row : public Chare<Row> {
   std::int64_t n_ = 0;
 };
 
-Setup setup_of(std::string option) {
-  std::string name = "test";
-  std::array<char*, 3> argv{name.data(), option.data(), nullptr};
-  int argc = 2;
-  return take_options(argc, argv.data());
-}
-
 /// Returns what the two clients receive. `time` becomes that of the collision.
 std::vector<std::int64_t> received(const std::string& option, Receivers receivers,
                                    std::array<std::int32_t, 2> n_each,
                                    const SimulatedCosts& costs = {}, Time* time = nullptr) {
-  Setup setup = setup_of(option);
+  Setup setup = tests::setup_of(option);
   std::vector<std::int64_t> counts;
   const auto program = [&]() -> Task {
     Collider collider;
@@ -70,7 +63,7 @@ std::vector<std::int64_t> received(const std::string& option, Receivers receiver
     if (time != nullptr) *time = now() - begin;
     counts = co_await rows.reduce<&Row::gather>();
   };
-  REQUIRE(run(setup, [&]() -> Task { return program(); }) == 0);
+  REQUIRE(run(setup, [&] { return program(); }) == 0);
   REQUIRE(counts.size() == 2);
   return counts;
 }
@@ -105,7 +98,7 @@ std::vector<std::array<std::int32_t, 4>> of_model(const std::string& option, Mod
                                                   std::int32_t n_owners,
                                                   const std::vector<std::uint32_t>& boxes_of_each,
                                                   double slack) {
-  Setup setup = setup_of(option);
+  Setup setup = tests::setup_of(option);
   std::vector<std::array<std::int32_t, 4>> pairs;
   const auto program = [&]() -> Task {
     Collider collider;
@@ -119,7 +112,7 @@ std::vector<std::array<std::int32_t, 4>> of_model(const std::string& option, Mod
     co_await collider.run(to);
     pairs = co_await clients.reduce<&Mixed::gather>();
   };
-  REQUIRE(run(setup, [&]() -> Task { return program(); }) == 0);
+  REQUIRE(run(setup, [&] { return program(); }) == 0);
   for (auto& [owner, other, mine, theirs] : pairs)
     if (boxes_of_each.size() == 1 && owner == other && theirs < mine) std::swap(mine, theirs);
   std::sort(pairs.begin(), pairs.end());
@@ -208,16 +201,9 @@ TEST_CASE("objects whose numbers do not fit into 32 bits are refused, and none i
 }
 
 TEST_CASE("a report that nothing receives is refused", "[collide][parallel]") {
-  std::string error;
-  tess::Setup setup{make_threads_machine(1), {}};
-  const int code = run(setup, [&]() -> Task {
+  const std::string error = tests::error_of("pes=1", []() -> Task {
     const Collider collider = make_collider({.rules = {.within_model = WithinModel::skip}});
-    try {
-      co_await collider.run({});
-    } catch (const Error& e) {
-      error = e.what();
-    }
+    co_await collider.run({});
   });
-  CHECK(code == 0);
-  CHECK(error.find("give it report_to<&Client::receive>(clients)") != std::string::npos);
+  CHECK_THAT(error, Contains("give it report_to<&Client::receive>(clients)"));
 }

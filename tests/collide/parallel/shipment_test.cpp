@@ -2,8 +2,8 @@
 #include "collide/collider.hpp"
 #include "runtime/runtime.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/run.hpp"
 
-#include <array>
 #include <cstdint>
 #include <cstdio>
 #include <string>
@@ -35,10 +35,7 @@ class Street : public Chare<Street> {
 /// How many messages PE 1 sends to PE 0 in a run with so many collisions, on two processes of one
 /// PE.
 unsigned long long n_sent(std::int32_t n_houses, std::int32_t n_collisions) {
-  std::string name = "test", option = "--sim=pes=2,per-process=1,cost=100ns";
-  std::array<char*, 3> argv{name.data(), option.data(), nullptr};
-  int argc = 2;
-  Setup setup = take_options(argc, argv.data());
+  Setup setup = tests::setup_of("--sim=pes=2,per-process=1,cost=100ns");
   std::vector<std::string> lines;
   setup.options.statistics = true;
   setup.options.report = [&](const std::string& line) {
@@ -61,7 +58,7 @@ unsigned long long n_sent(std::int32_t n_houses, std::int32_t n_collisions) {
     }
     n_pairs = co_await streets.reduce<&Street::count>();
   };
-  REQUIRE(run(setup, [&]() -> Task { return program(); }) == 0);
+  REQUIRE(run(setup, [&] { return program(); }) == 0);
   REQUIRE(n_pairs == 9 * static_cast<std::uint64_t>(n_houses * n_collisions));
   REQUIRE(lines.size() == 2);
   unsigned long long n_run = 0, n = 0;

@@ -9,10 +9,10 @@
 #include "runtime/core/hash.hpp"
 #include "runtime/more/testing.hpp"
 #include "runtime/runtime.hpp"
-#include "runtime/wire/machine/threads.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/n_seeds.hpp"
 #include "tests/support/reported_pairs.hpp"
+#include "tests/support/run.hpp"
 
 #include <algorithm>
 #include <array>
@@ -41,8 +41,7 @@ struct Moving {
   std::int32_t other_models = -1;
   bool identical = false;  ///< all boxes are
   bool with_capsules = false;
-  double scale = 1;
-  double voxel_size = 0;
+  double scale = 1, voxel_size = 0;
   PairRules rules{};
   std::optional<ModelId> only{};
 
@@ -78,8 +77,7 @@ std::vector<Item> items_of(const Moving& scene, std::int32_t client, std::int32_
   return items;
 }
 
-using test::in_order;
-using test::Reports;
+using test::in_order, test::Reports;
 
 Reports all_pairs(const Moving& scene, std::int32_t step) {
   std::vector<Item> all;
@@ -208,8 +206,7 @@ Task collide_two_at_once(const std::array<Moving, 2>& scenes, std::int32_t n_ste
       for (const Movers& one : movers) one.clients.broadcast<&Mover::submit>(one.collider, step);
     });
     Task first = movers[0].collider.run(movers[0].receivers);
-    Task second = movers[1].collider.run(movers[1].receivers);
-    Task round = voxels.round();
+    Task second = movers[1].collider.run(movers[1].receivers), round = voxels.round();
     co_await first;
     co_await second;
     co_await round;
@@ -255,9 +252,7 @@ TEST_CASE("with a slack each step reports the pairs of its boxes", "[collide][sl
   test::for_seeds(1, 1 + test::n_seeds(300), [&](std::uint64_t seed) {
     const Moving scene = scene_of(seed);
     Outcome outcome;
-    machine_of(seed)
-        .run([&]() -> Task { return collide_steps(scene, n_steps, outcome); })
-        .require_success();
+    machine_of(seed).run([&] { return collide_steps(scene, n_steps, outcome); }).require_success();
     for (std::int32_t step = 0; step < n_steps; ++step) {
       CAPTURE(step);
       REQUIRE((outcome.steps.at(static_cast<std::size_t>(step)) == all_pairs(scene, step)));
@@ -275,7 +270,7 @@ TEST_CASE("collisions with a slack may overlap", "[collide][slack]") {
     const Moving scene = scene_of(seed);
     Outcome outcome;
     machine_of(seed)
-        .run([&]() -> Task { return collide_in_a_row(scene, n_steps, outcome); })
+        .run([&] { return collide_in_a_row(scene, n_steps, outcome); })
         .require_success();
     Reports expected;
     for (std::int32_t step = 0; step < n_steps; ++step)
@@ -291,7 +286,7 @@ TEST_CASE("two colliders with a slack do not disturb each other, nor does the ba
     const std::array<Moving, 2> scenes{scene_of(seed), scene_of(seed + 1000)};
     std::array<Outcome, 2> outcomes;
     machine_of(seed)
-        .run([&]() -> Task { return collide_two_at_once(scenes, n_steps, outcomes); })
+        .run([&] { return collide_two_at_once(scenes, n_steps, outcomes); })
         .require_success();
     for (std::int32_t step = 0; step < n_steps; ++step) {
       CAPTURE(step);
@@ -312,8 +307,7 @@ TEST_CASE(
     Moving scene{.seed = 1, .n_clients = 4, .drift = slack / 3 * 0.99};
     const auto kept_in = [&](std::int32_t n_steps) {
       Outcome outcome;
-      machine.run([&]() -> Task { return collide_steps(scene, n_steps, outcome); })
-          .require_success();
+      machine.run([&] { return collide_steps(scene, n_steps, outcome); }).require_success();
       std::string kept;
       for (const CollisionStatistics& s : outcome.statistics) kept += was_kept(s) ? 'k' : 's';
       return kept;
@@ -335,8 +329,7 @@ TEST_CASE(
 TEST_CASE("on threads pairs are kept", "[collide][slack]") {
   const Moving scene{.seed = 5, .n_clients = 4, .n_boxes = 100, .drift = 0.01};
   Outcome outcome;
-  Setup setup{make_threads_machine(2), {}};
-  REQUIRE(run(setup, [&]() -> Task { return collide_steps(scene, 6, outcome); }) == 0);
+  REQUIRE(tests::run_threads(2, [&] { return collide_steps(scene, 6, outcome); }).exit_code == 0);
   for (std::int32_t step = 0; step < 6; ++step)
     REQUIRE((outcome.steps.at(static_cast<std::size_t>(step)) == all_pairs(scene, step)));
   REQUIRE(std::count_if(outcome.statistics.begin(), outcome.statistics.end(), &was_kept) >= 1);
@@ -351,7 +344,7 @@ TEST_CASE("more pairs than are kept are found without keeping them", "[collide][
                      .rules = {.within_model = WithinModel::test}};
   Outcome outcome;
   const test::Machine machine{.pes = 3, .seed = 3, .migration = 0};
-  machine.run([&]() -> Task { return collide_steps(scene, 2, outcome); }).require_success();
+  machine.run([&] { return collide_steps(scene, 2, outcome); }).require_success();
   for (std::size_t step = 0; step < 2; ++step) {
     REQUIRE((outcome.steps.at(step) == all_pairs(scene, 0)));
     REQUIRE(outcome.statistics[step].n_kept == 0);
@@ -393,9 +386,7 @@ TEST_CASE("larger boxes with by far too many pairs are not searched", "[collide]
                .identical = true,
                .rules = {.within_model = WithinModel::test}};
   Outcome outcome;
-  test::Machine{.pes = 1}
-      .run([&]() -> Task { return collide_steps(scene, 2, outcome); })
-      .require_success();
+  test::Machine{.pes = 1}.run([&] { return collide_steps(scene, 2, outcome); }).require_success();
   constexpr std::size_t n_pairs = std::size_t{1800} * 1799 / 2;
   for (const Reports& step : outcome.steps) {
     REQUIRE(step.size() == n_pairs);
@@ -408,9 +399,8 @@ TEST_CASE("colliders with a slack refuse capsules and coordinates without a cell
   const test::Machine machine{.pes = 2, .seed = 3};
   Moving scene{.with_capsules = true};
   Outcome outcome;
-  machine.run([&]() -> Task { return collide_steps(scene, 1, outcome); }).require_success();
-  REQUIRE_THAT(outcome.refused,
-               Catch::Contains("30 capsules were submitted to a collider with a slack"));
+  machine.run([&] { return collide_steps(scene, 1, outcome); }).require_success();
+  REQUIRE_THAT(outcome.refused, Contains("30 capsules were submitted to a collider with a slack"));
   REQUIRE(outcome.steps.at(0).empty());
 
   scene.with_capsules = false;
@@ -435,7 +425,7 @@ TEST_CASE("colliders with a slack refuse capsules and coordinates without a cell
     co_await end(movers, after);
   };
   machine.run(refused_and_again).require_success();
-  REQUIRE_THAT(error, Catch::Contains("has no 32-bit cell at voxel size 1e-10"));
+  REQUIRE_THAT(error, Contains("has no 32-bit cell at voxel size 1e-10"));
   REQUIRE(after.steps.at(0).empty());
 }
 
@@ -448,7 +438,7 @@ TEST_CASE("boxes whose larger ones have no cells collide as without a slack", "[
   scene.voxel_size = highest / 2147483000;  // the last cell is 2147483647
   Outcome outcome;
   test::Machine{.pes = 2, .seed = 3}
-      .run([&]() -> Task { return collide_steps(scene, 2, outcome); })
+      .run([&] { return collide_steps(scene, 2, outcome); })
       .require_success();
   for (std::size_t step = 0; step < 2; ++step) {
     REQUIRE_FALSE(outcome.steps.at(step).empty());
@@ -463,17 +453,11 @@ TEST_CASE("boxes whose larger ones have no cells collide as without a slack", "[
 TEST_CASE("a slack is a length", "[collide][slack]") {
   for (const double wrong :
        {-1.0, std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()}) {
-    std::string error;
-    const auto make = [&]() -> Task {
-      try {
-        static_cast<void>(make_collider({.slack = wrong}));
-      } catch (const Error& caught) {
-        error = caught.what();
-      }
+    const std::string error = tests::error_of("pes=1", [&]() -> Task {
+      static_cast<void>(make_collider({.slack = wrong}));
       co_return;
-    };
-    test::Machine{.pes = 1}.run(make).require_success();
-    REQUIRE_THAT(error, Catch::Contains("give a positive length, or 0 to search"));
+    });
+    REQUIRE_THAT(error, Contains("give a positive length, or 0 to search"));
   }
 }
 

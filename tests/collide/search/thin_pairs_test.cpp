@@ -18,8 +18,7 @@ namespace {
 /// What a scene of thin triangles looks like.
 struct Needles {
   std::uint32_t n;
-  double length = 0.3, width = 1e-3;
-  double offset = 0, scale = 1;
+  double length = 0.3, width = 1e-3, offset = 0, scale = 1;
   bool is_flat = false;     ///< all in one plane
   bool on_lattice = false;  ///< corners coincide, ends touch
   double degenerate = 0.1;  ///< chance of an object of one point, or one that equals another
@@ -317,13 +316,12 @@ TEST_CASE("a thin object that is not valid, and a list of models that is too sho
   const std::vector<std::uint32_t> models(399);
   const std::span<const Triangle> all(needles);
   REQUIRE_THROWS_WITH(count_pairs(all, {.models = models, .within_model = WithinModel::skip}),
-                      Catch::Contains("399 models for 400 objects"));
+                      Contains("399 models for 400 objects"));
   REQUIRE_THROWS_WITH(count_pairs(all, all, {.models = models, .within_model = WithinModel::skip}),
-                      Catch::Contains("across two sets"));
+                      Contains("across two sets"));
   needles[17].corners[1][2] = std::numeric_limits<double>::infinity();
-  REQUIRE_THROWS_WITH(count_pairs(all), Catch::Contains("of object 17 is not valid"));
-  REQUIRE_THROWS_WITH(count_pairs(all.first(10), all),
-                      Catch::Contains("of object 17 of the second set"));
+  REQUIRE_THROWS_WITH(count_pairs(all), Contains("of object 17 is not valid"));
+  REQUIRE_THROWS_WITH(count_pairs(all.first(10), all), Contains("of object 17 of the second set"));
   // The others stand if they are told to.
   const PairOptions others{.invalid_boxes = tess::collide::InvalidBoxes::leave_out};
   std::vector<Triangle> valid = needles;

@@ -90,14 +90,14 @@ TEST_CASE("errors name bad boxes, coordinates and voxel sizes", "[collide]") {
   for (const Aabb& box :
        {Aabb{{0, nan, 0}, {1, 1, 1}}, Aabb{{0, 0, 0}, {inf, 1, 1}}, Aabb{{2, 0, 0}, {1, 1, 1}}})
     REQUIRE_THROWS_WITH(serial::cells_of(item(box), VoxelGrid(1)),
-                        Catch::Contains("object 42 of owner [7]"));
-  REQUIRE_THROWS_WITH(VoxelGrid(1).cell_of({1, -3e9, 0}), Catch::Contains("-3e+09"));
+                        Contains("object 42 of owner [7]"));
+  REQUIRE_THROWS_WITH(VoxelGrid(1).cell_of({1, -3e9, 0}), Contains("-3e+09"));
   REQUIRE_THROWS_AS(VoxelGrid(1).cell_of({nan, 0, 0}), Error);
   REQUIRE(VoxelGrid(1).cell_of({2147483647.5, -2147483648.0, -5e-324}) ==
           Cell{2147483647, -2147483647 - 1, -1});
   REQUIRE_THROWS_AS(VoxelGrid(0), Error);
   REQUIRE_THROWS_WITH(VoxelGrid({0, 0, 0}, {1, 0, 1}),
-                      Catch::Contains("size 0 on axis 1") && Catch::Contains("or 0 for all"));
+                      Contains("size 0 on axis 1") && Contains("or 0 for all"));
   REQUIRE_THROWS_AS(VoxelGrid(nan), Error);
   REQUIRE_THROWS_AS(VoxelGrid(1e-310), Error);
 }

@@ -9,8 +9,7 @@
 #include <limits>
 #include <random>
 
-using boost::multiprecision::cpp_rational;
-using tess::collide::shapes::ExactNumber;
+using boost::multiprecision::cpp_rational, tess::collide::shapes::ExactNumber;
 
 namespace {
 
@@ -56,8 +55,7 @@ TEST_CASE("a product of six differences of the largest and the smallest double f
   const double huge = std::numeric_limits<double>::max();
   const double tiny = std::numeric_limits<double>::denorm_min();
   const ExactNumber wide = ExactNumber(huge) - ExactNumber(-huge) + ExactNumber(tiny);
-  const ExactNumber cube = wide * wide * wide;
-  const ExactNumber sixth = cube * cube;
+  const ExactNumber cube = wide * wide * wide, sixth = cube * cube;
   CHECK(sixth.sign() == 1);
   const ExactNumber tiny_cube = ExactNumber(tiny) * ExactNumber(tiny) * ExactNumber(tiny);
   CHECK((sixth + sixth - sixth - (sixth - tiny_cube * tiny_cube)).sign() == 1);

@@ -69,14 +69,14 @@ TEST_CASE("pairs() refuses a shape with a coordinate that is not finite, whereve
         std::vector<Triangle> triangles(5, some_shape<Triangle>(random));
         if (corner < 3) {
           triangles[3].corners[corner][k] = bad;
-          CHECK_THROWS_WITH(pairs(std::span<const Triangle>(triangles)), Catch::Contains("3"));
+          CHECK_THROWS_WITH(pairs(std::span<const Triangle>(triangles)), Contains("3"));
         }
         std::vector<Tetrahedron> tetrahedra(9, some_shape<Tetrahedron>(random));
         tetrahedra[8].corners[corner][k] = bad;
-        CHECK_THROWS_WITH(pairs(std::span<const Tetrahedron>(tetrahedra)), Catch::Contains("8"));
+        CHECK_THROWS_WITH(pairs(std::span<const Tetrahedron>(tetrahedra)), Contains("8"));
         std::vector<Swept<>> swept(9, some_shape<Swept<>>(random));
         Aabb& box = corner % 2 == 0 ? swept[6].start : swept[6].end;
         (corner < 2 ? box.lo : box.hi)[k] = bad;
-        CHECK_THROWS_WITH(pairs(std::span<const Swept<>>(swept)), Catch::Contains("6"));
+        CHECK_THROWS_WITH(pairs(std::span<const Swept<>>(swept)), Contains("6"));
       }
 }

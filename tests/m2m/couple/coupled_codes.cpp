@@ -132,17 +132,13 @@ ArrayProxy<C> pieces(const TetMesh& mesh, std::int32_t n, std::int32_t n_all = 0
 
 template <class C>
 Task expect(ArrayProxy<C> array, int step, bool both = false) {
-  Future<std::uint64_t> n_wrong;
-  array.template broadcast<&C::check>(step, both, n_wrong.callback());
-  const std::uint64_t n = co_await n_wrong;
+  const std::uint64_t n = co_await array.template reduce<&C::check>(step, both);
   TESS_CHECK(n == 0, n, " wrong values in step ", step);
 }
 
 template <class C>
 TaskOf<ValueOf> values_of(ArrayProxy<C> array) {
-  Future<ValueOf> all;
-  array.template broadcast<&C::gather>(all.callback());
-  co_return co_await all;
+  co_return co_await array.template reduce<&C::gather>();
 }
 
 const TetMesh left_mesh = kuhn_mesh({6, 0.2});
@@ -198,9 +194,7 @@ Task migration() {
        {TransferKind::linear, TransferKind::second_order, TransferKind::conservative}) {
     Two codes;
     co_await make(codes, 5, 6, 1, 2);
-    CouplingOptions options;
-    options.kind = kind;
-    Coupling there(codes.left, codes.right, options);
+    Coupling there(codes.left, codes.right, {.kind = kind});
     for (int k = 1; k <= 8; ++k) {
       const auto hop = [&] {
         codes.left.broadcast<&Left::hop>(k);
@@ -233,8 +227,7 @@ Task balancing() {
   co_await back.search();
   for (int k = 1; k <= 6; ++k) {
     co_await step(codes, k);
-    Task one = there.apply<&Left::out, &Right::in>();
-    Task other = back.apply<&Right::out, &Left::in>();
+    Task one = there.apply<&Left::out, &Right::in>(), other = back.apply<&Right::out, &Left::in>();
     Future<std::uint64_t> left_done, right_done;
     codes.left.broadcast<&Left::balance>(left_done.callback());
     codes.right.broadcast<&Right::balance>(right_done.callback());
@@ -254,8 +247,7 @@ Task three_at_once() {
   co_await make(codes, 4, 5);
   ArrayProxy<Right> third;
   co_await epoch([&] { third = pieces<Right>(kuhn_mesh({4}), 3); });
-  Coupling a(codes.left, codes.right);
-  Coupling b(codes.left, third);
+  Coupling a(codes.left, codes.right), b(codes.left, third);
   Coupling c(codes.left, codes.left);
   auto sa = a.search(), sb = b.search(), sc = c.search();
   co_await sa;
@@ -263,8 +255,7 @@ Task three_at_once() {
   co_await sc;
   for (int k = 1; k <= 4; ++k) {
     co_await step(codes, k);
-    Task ta = a.apply<&Left::out, &Right::in>();
-    Task tb = b.apply<&Left::out, &Right::in>();
+    Task ta = a.apply<&Left::out, &Right::in>(), tb = b.apply<&Left::out, &Right::in>();
     Task tc = c.apply<&Left::out, &Left::in>();
     co_await tc;
     co_await ta;
@@ -308,9 +299,8 @@ Task motion() {
   co_await make(codes, 4, 6);
   ArrayProxy<Right> moving;
   co_await epoch([&] { moving = pieces<Right>(kuhn_mesh({3}), 4); });
-  CouplingOptions options;
-  options.policy = UseValue{-7e5};
-  Coupling still(codes.left, codes.right), to_moving(codes.left, moving, options);
+  Coupling still(codes.left, codes.right),
+      to_moving(codes.left, moving, {.policy = UseValue{-7e5}});
   co_await still.search();
   co_await to_moving.search();
   for (int k = 1; k <= 5; ++k) {
@@ -341,9 +331,7 @@ Task empty_pieces() {
         codes.left = pieces<Left>(left_mesh, n_left, 5, 1, 2);
         codes.right = pieces<Right>(right_mesh, n_right, 6, 1, 2);
       });
-      CouplingOptions options;
-      options.kind = kind;
-      Coupling there(codes.left, codes.right, options);
+      Coupling there(codes.left, codes.right, {.kind = kind});
       co_await there.search();
       co_await step(codes, 1);
       co_await there.apply<&Left::out, &Right::in>();
@@ -400,9 +388,8 @@ double integral(const TetMesh& mesh, const ValueOf& values) {
 Task two_kinds() {
   Two codes;
   co_await make(codes, 4, 5, 1, 1);
-  CouplingOptions options;
-  options.kind = TransferKind::conservative;
-  Coupling mean(codes.left, codes.right, options), point(codes.left, codes.right);
+  Coupling mean(codes.left, codes.right, {.kind = TransferKind::conservative}),
+      point(codes.left, codes.right);
   Coupling to_itself(codes.left, codes.left);
   auto one = mean.search(), other = point.search(), third = to_itself.search();
   co_await one;
@@ -416,8 +403,7 @@ Task two_kinds() {
   co_await a;
   co_await b;
   co_await c;
-  const ValueOf given = co_await values_of(codes.left);
-  const ValueOf taken = co_await values_of(codes.right);
+  const ValueOf given = co_await values_of(codes.left), taken = co_await values_of(codes.right);
   const double want = integral(left_mesh, given), got = integral(right_mesh, taken);
   TESS_CHECK(std::abs(got - want) < 1e-12, "the integral changes from ", want, " to ", got);
   co_await end(codes);
@@ -503,10 +489,7 @@ Task rounds_to(double reach, TransferKind kind) {
     codes.left = pieces<Left>(left_end, 5, 0, 1, 1);
     codes.right = pieces<Right>(right_mesh, 9, static_cast<std::int32_t>(n_targets), 1, 1);
   });
-  CouplingOptions options;
-  options.kind = kind;
-  options.policy = UseValue{-7e5};
-  Coupling there(codes.left, codes.right, options);
+  Coupling there(codes.left, codes.right, {.policy = UseValue{-7e5}, .kind = kind});
   for (int k = 1; k <= 2; ++k) {
     co_await there.search();
     co_await step(codes, k);
@@ -583,9 +566,7 @@ Task run_programs(std::vector<std::string> names) {
 
 int run_all(int argc, char** argv) {
   Setup setup = take_options(argc, argv);
-  return run(setup, [&]() -> Task {
-    return run_programs(std::vector<std::string>(argv + 1, argv + argc));
-  });
+  return run(setup, [&] { return run_programs(std::vector<std::string>(argv + 1, argv + argc)); });
 }
 
 }  // namespace

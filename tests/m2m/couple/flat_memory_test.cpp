@@ -2,9 +2,9 @@
 #include "m2m/read_mesh.hpp"
 #include "m2m/transfer.hpp"
 #include "runtime/more/scoped.hpp"
-#include "runtime/wire/machine/threads.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/resident.hpp"
+#include "tests/support/run.hpp"
 
 namespace {
 
@@ -37,8 +37,8 @@ TEST_CASE("ten thousand transfers leave memory flat", "[m2m]") {
   tess::test::Growth growth(10'000);
   const Scene scene;
   std::uint64_t n_found = 0;
-  Setup setup{make_threads_machine(2), {}};
-  REQUIRE(run(setup, [&]() -> Task { return transfer_often(scene, growth, n_found); }) == 0);
+  REQUIRE(tests::run_threads(2, [&] { return transfer_often(scene, growth, n_found); }).exit_code ==
+          0);
   CHECK(n_found == 10'000 * scene.mesh_b.n_points());
   INFO("grows by " << growth.bytes() << " bytes from round 2500 to 10000");
   REQUIRE(growth.bytes() >= 0);

@@ -7,6 +7,8 @@
 #include "m2m/rows/search/nearest_vertex.hpp"
 #include "m2m/transfer.hpp"
 #include "runtime/more/testing.hpp"
+#include "tests/m2m/gathered.hpp"
+#include "tests/m2m/samples.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/n_seeds.hpp"
 #include "tests/support/run.hpp"
@@ -110,18 +112,9 @@ Task transfer_case(const LocatedCase& c, std::int32_t n_parts, Located& out) {
                      n_parts % 5 + 1, PartitionMethod::hsfc);
   });
   const TransferSummary summary = co_await transfer(source, target, c.options);
-  Future<Outcome> outcome;
-  target.workers.broadcast<&Worker::gather>(outcome.callback());
-  const Outcome all = co_await outcome;
-  const std::size_t n = c.target.n_points();
-  out = {std::vector<Status>(n), std::vector<double>(n), std::vector<double>(n), {}};
-  REQUIRE(all.points.size() == n);
-  for (std::size_t i = 0; i < n; ++i) {
-    const auto v = static_cast<std::size_t>(all.points[i]);
-    out.status[v] = all.status[i];
-    out.distance[v] = all.distance[i];
-    out.values[v] = all.values[i];
-  }
+  const Outcome all = co_await test::gathered(target);
+  REQUIRE(all.points.size() == c.target.n_points());
+  out = {all.status, all.distance, all.values, {}};
   out.worst.assign(summary.search.worst.list().begin(), summary.search.worst.list().end());
 }
 
@@ -132,7 +125,7 @@ void check_on_schedules(const LocatedCase& c, std::uint64_t n_seeds = 12) {
     const auto n_parts = static_cast<std::int32_t>(1 + seed * 5 % 13);
     INFO(n_parts << " parts");
     Located got;
-    machine.run([&]() -> Task { return transfer_case(c, n_parts, got); }).require_success();
+    machine.run([&] { return transfer_case(c, n_parts, got); }).require_success();
     const bool same_status = got.status == want.status, same_worst = got.worst == want.worst;
     REQUIRE(same_status);
     REQUIRE(same_worst);
@@ -141,16 +134,10 @@ void check_on_schedules(const LocatedCase& c, std::uint64_t n_seeds = 12) {
   });
 }
 
-TetMesh placed(TetMesh mesh, double scale, double offset) {
-  for (Point& p : mesh.points)
-    for (double& x : p) x = x * scale + offset;
-  return mesh;
-}
-
 /// The target reaches a quarter of the source's width beyond it, on all sides.
 LocatedCase overhanging(double scale = 1, double offset = 0) {
-  LocatedCase c{placed(read_mesh("kuhn:4@0.2"), scale, offset),
-                placed(read_mesh("kuhn:7@0.1"), 1.5 * scale, offset - 0.25 * scale),
+  LocatedCase c{test::moved_by(read_mesh("kuhn:4@0.2"), scale, offset),
+                test::moved_by(read_mesh("kuhn:7@0.1"), 1.5 * scale, offset - 0.25 * scale),
                 {},
                 {}};
   c.values = sample(c.source, "f", make_formula("gaussian", bounds(c.source))).values;

@@ -122,13 +122,11 @@ Task settle_alone(std::string name, ArrayProxy<Patch> source, ArrayProxy<Patch> 
 Task misuse(std::string name, TransferKind kind) {
   ArrayProxy<Patch> source, target;
   co_await epoch([&] { source = patches(4, 3), target = patches(3, 2); });
-  CouplingOptions options;
-  options.kind = kind;
   if (name == "same_ids") co_await epoch([&] { source[{1}].send<&Patch::number_alike>(); });
   if (name == "same_tet_ids")
     co_await epoch([&] { source[{1}].send<&Patch::number_tets_alike>(); });
   if (name == "same_tets") co_await epoch([&] { source[{0}].send<&Patch::show_as>(source[{1}]); });
-  Coupling coupling(source, target, options);
+  Coupling coupling(source, target, {.kind = kind});
   if (name == "two_first_searches") {
     const auto first = coupling.search();
     co_await coupling.search();
@@ -200,7 +198,7 @@ int run_misuse(int argc, char** argv) {
   Setup setup = take_options(argc, argv);
   const std::string name = argc > 1 ? argv[1] : "";
   const TransferKind kind = parse_transfer_kind(argc > 2 ? argv[2] : "");
-  return run(setup, [&]() -> Task { return misuse(name, kind); });
+  return run(setup, [&] { return misuse(name, kind); });
 }
 
 }  // namespace

@@ -4,11 +4,13 @@
 #include "m2m/rows/search/nearest_vertex.hpp"
 #include "m2m/transfer.hpp"
 #include "runtime/more/testing.hpp"
-#include "runtime/wire/machine/threads.hpp"
+#include "tests/m2m/gathered.hpp"
 #include "tests/m2m/non_conforming.hpp"
+#include "tests/m2m/samples.hpp"
 #include "tests/m2m/serial_transfer.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/n_seeds.hpp"
+#include "tests/support/run.hpp"
 #include "tests/support/shared_data.hpp"
 
 #include <algorithm>
@@ -17,8 +19,7 @@
 
 using namespace tess;
 using namespace tess::m2m;
-using tess::test::SerialReport;
-using tess::test::transfer_serial;
+using tess::test::SerialReport, tess::test::transfer_serial;
 
 namespace {
 
@@ -74,23 +75,17 @@ Task run_case(const Case& c, Result& result) {
     target = scatter(c.target, c.target_fields, c.n_parts + 1, PartitionMethod::hsfc);
   });
   co_await transfer(source, target, {.voxel_size = c.voxel, .policy = c.policy, .kind = c.kind});
-  Future<Outcome> outcome;
-  target.workers.broadcast<&Worker::gather>(outcome.callback());
-  const Outcome all = co_await outcome;
-  result.status.assign(c.target.n_points(), Status::outside);
-  result.values.assign(2, std::vector<double>(c.target.n_points()));
+  const Outcome all = co_await test::gathered(target);
   REQUIRE(all.points.size() == c.target.n_points());
-  for (std::size_t i = 0; i < all.points.size(); ++i) {
-    const auto vertex = static_cast<std::size_t>(all.points[i]);
-    result.status[vertex] = all.status[i];
-    for (std::size_t f = 0; f < 2; ++f) result.values[f][vertex] = all.values[i * 2 + f];
-  }
+  result.status = all.status;
+  result.values.assign(2, {});
+  for (std::size_t i = 0; i < all.values.size(); ++i) result.values[i % 2].push_back(all.values[i]);
 }
 
 /// `run_on_machine` runs a main function on some machine, and requires that it ends well.
 void check_same(const Case& c, const Result& want, const auto& run_on_machine) {
   Result got;
-  run_on_machine([&]() -> Task { return run_case(c, got); });
+  run_on_machine([&] { return run_case(c, got); });
   const bool same_status = got.status == want.status;  // so that a failure does not print the lists
   REQUIRE(same_status);
   for (std::size_t f = 0; f < 2; ++f)
@@ -120,26 +115,20 @@ void check_on_all_machines(Case& c, std::uint64_t n_seeds) {
   });
   for (const std::int32_t pes : {1, 2, 4}) {
     INFO("threads, " << pes << " PEs");
-    Setup threads{make_threads_machine(pes), {}};
-    check_same(c, want, [&](const auto& main) { REQUIRE(run(threads, main) == 0); });
+    check_same(c, want,
+               [&](const auto& main) { REQUIRE(tests::run_threads(pes, main).exit_code == 0); });
   }
-}
-
-TetMesh moved(TetMesh mesh, double scale, double offset) {
-  for (Point& p : mesh.points)
-    for (double& x : p) x = x * scale + offset;
-  return mesh;
 }
 
 }  // namespace
 
 TEST_CASE("a transfer through chares gives the bits of the serial one on every schedule",
           "[m2m][parallel]") {
-  const TetMesh coarse = read_mesh("kuhn:4@0.2");
-  const TetMesh fine = read_mesh("kuhn:6@0.1");
+  const TetMesh coarse = read_mesh("kuhn:4@0.2"), fine = read_mesh("kuhn:6@0.1");
   for (const OutsidePolicy& policy :
        {OutsidePolicy{Keep{}}, OutsidePolicy{UseValue{3}}, OutsidePolicy{Nearest{}}}) {
-    Case c = make_case(coarse, moved(fine, 1.1, -0.05), policy);  // some vertices lie outside
+    Case c =
+        make_case(coarse, test::moved_by(fine, 1.1, -0.05), policy);  // some vertices lie outside
     check_on_all_machines(c, 60);
   }
 }
@@ -149,7 +138,8 @@ TEST_CASE("nearest vertices through chares are those of the serial search, also 
   // All vertices lie outside, then half of them. On lattices there are many ties.
   for (const auto& [scale, offset] : {std::pair{1.0, 1.25}, std::pair{2.0, -0.5}}) {
     INFO("scale " << scale << ", offset " << offset);
-    Case c = make_case(read_mesh("kuhn:6"), moved(read_mesh("kuhn:8"), scale, offset), Nearest{});
+    Case c = make_case(read_mesh("kuhn:6"), test::moved_by(read_mesh("kuhn:8"), scale, offset),
+                       Nearest{});
     check_on_all_machines(c, 40);
   }
 }
@@ -159,7 +149,8 @@ TEST_CASE(
     "[m2m][parallel]") {
   // A quarter of the points lie outside, and many are equally near to several vertices.
   for (const OutsidePolicy& policy : {OutsidePolicy{Keep{}}, OutsidePolicy{UseValue{3}}}) {
-    Case c = make_case(read_mesh("kuhn:4"), moved(read_mesh("kuhn:8"), 1.25, -0.25), policy);
+    Case c =
+        make_case(read_mesh("kuhn:4"), test::moved_by(read_mesh("kuhn:8"), 1.25, -0.25), policy);
     c.kind = TransferKind::nearest;
     const std::vector<Status> status = serial(c).status;
     REQUIRE(std::count(status.begin(), status.end(), Status::outside) > 100);
@@ -174,8 +165,7 @@ TEST_CASE("a mesh transferred onto itself through chares returns its values bit 
     Case c = make_case(mesh, mesh, Keep{});
     check_on_all_machines(c, 20);
     Result got;
-    Setup setup{make_threads_machine(2), {}};
-    REQUIRE(run(setup, [&]() -> Task { return run_case(c, got); }) == 0);
+    REQUIRE(tests::run_threads(2, [&] { return run_case(c, got); }).exit_code == 0);
     for (std::size_t f = 0; f < 2; ++f) {
       const bool same_values = got.values[f] == c.source_fields[f].values;
       REQUIRE(same_values);
@@ -185,12 +175,12 @@ TEST_CASE("a mesh transferred onto itself through chares returns its values bit 
 }
 
 TEST_CASE("offsets and scales lose no vertex through chares", "[m2m][parallel]") {
-  const TetMesh coarse = read_mesh("kuhn:4@0.2");
-  const TetMesh fine = read_mesh("kuhn:5");
+  const TetMesh coarse = read_mesh("kuhn:4@0.2"), fine = read_mesh("kuhn:5");
   for (const auto& [scale, offset] :
        {std::pair{1.0, 1e9}, std::pair{1e-9, 0.0}, std::pair{1e9, 0.0}}) {
     INFO("scale " << scale << ", offset " << offset);
-    Case c = make_case(moved(coarse, scale, offset), moved(fine, scale, offset), Keep{});
+    Case c = make_case(test::moved_by(coarse, scale, offset), test::moved_by(fine, scale, offset),
+                       Keep{});
     check_on_all_machines(c, 6);
     for (const Status status : serial(c).status) REQUIRE(status != Status::outside);
   }

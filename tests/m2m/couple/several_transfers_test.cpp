@@ -3,10 +3,12 @@
 #include "m2m/read_mesh.hpp"
 #include "m2m/transfer.hpp"
 #include "runtime/more/testing.hpp"
-#include "runtime/wire/machine/threads.hpp"
+#include "tests/m2m/gathered.hpp"
+#include "tests/m2m/samples.hpp"
 #include "tests/m2m/serial_transfer.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/n_seeds.hpp"
+#include "tests/support/run.hpp"
 
 #include <algorithm>
 #include <array>
@@ -25,9 +27,7 @@ struct MeshWithField {
 };
 
 MeshWithField piece(const char* name, double scale, double offset, const char* formula) {
-  MeshWithField p{read_mesh(name), {"f", 2, {}}};
-  for (Point& point : p.mesh.points)
-    for (double& x : point) x = x * scale + offset;
+  MeshWithField p{test::moved_by(read_mesh(name), scale, offset), {"f", 2, {}}};
   const Field scalar = sample(p.mesh, formula, make_formula(formula, bounds(p.mesh)));
   for (const double value : scalar.values) {
     p.field.values.push_back(value);
@@ -50,17 +50,8 @@ struct Held {
 };
 
 Task gather(DistributedMesh mesh, Held* held) {
-  Future<Outcome> outcome;
-  mesh.workers.broadcast<&Worker::gather>(outcome.callback());
-  const Outcome all = co_await outcome;
-  held->values.resize(2 * all.points.size());
-  held->status.resize(all.points.size());
-  for (std::size_t i = 0; i < all.points.size(); ++i) {
-    const auto vertex = static_cast<std::size_t>(all.points[i]);
-    held->status.at(vertex) = all.status[i];
-    held->values.at(2 * vertex) = all.values[2 * i];
-    held->values.at(2 * vertex + 1) = all.values[2 * i + 1];
-  }
+  const Outcome all = co_await test::gathered(mesh);
+  *held = {all.values, all.status};
 }
 
 /// The number of parts of the two meshes of a case.
@@ -78,8 +69,7 @@ TransferOptions options_of(const OutsidePolicy& policy) {
 
 /// Requires equality. A failure does not print the lists.
 void require_same(const Held& got, const MeshWithField& want, const std::vector<Status>& status) {
-  const bool same_values = got.values == want.field.values;
-  const bool same_status = got.status == status;
+  const bool same_values = got.values == want.field.values, same_status = got.status == status;
   REQUIRE(same_values);
   REQUIRE(same_status);
 }
@@ -173,7 +163,7 @@ void on_many_schedules(std::uint64_t n_seeds, const std::function<Scenario(Parts
   const auto check_one = [&](Parts n, const auto& run_on_machine) {
     const Scenario check = make(n);
     HeldBoth held;
-    run_on_machine([&]() -> Task { return check.program(&held); });
+    run_on_machine([&] { return check.program(&held); });
     check.judge(held);
   };
   test::for_seeds(1, test::n_seeds(n_seeds) + 1, [&](std::uint64_t seed) {
@@ -185,8 +175,8 @@ void on_many_schedules(std::uint64_t n_seeds, const std::function<Scenario(Parts
   });
   for (const std::int32_t pes : {1, 2, 4}) {
     INFO("threads, " << pes << " PEs");
-    Setup threads{make_threads_machine(pes), {}};
-    check_one({5, 3}, [&](const auto& main) { REQUIRE(run(threads, main) == 0); });
+    check_one({5, 3},
+              [&](const auto& main) { REQUIRE(tests::run_threads(pes, main).exit_code == 0); });
   }
 }
 

@@ -7,6 +7,7 @@
 #include "m2m/mesh_parts.hpp"
 #include "m2m/transfer.hpp"
 #include "runtime/more/when.hpp"
+#include "tests/m2m/gathered.hpp"
 
 #include <cmath>
 #include <map>
@@ -141,9 +142,7 @@ Task by_copies(TransferKind kind) {
   co_await epoch([&] {
     both = {patches(kuhn_mesh({4, 0.2}), 4), patches(kuhn_mesh({5, 0.1}), 5)};
   });
-  CouplingOptions options;
-  options.kind = kind;
-  Coupling coupling(both.source, both.target, options);
+  Coupling coupling(both.source, both.target, {.kind = kind});
   co_await coupling.search();
   Coupling copy = coupling;
   for (int k = 1; k <= 6; ++k) {
@@ -176,8 +175,7 @@ Task to_own_fields(TransferKind kind) {
     both = {patches(kuhn_mesh({4, 0.2}), 4), patches(kuhn_mesh({5, 0.1}), 5)};
     other = patches(kuhn_mesh({3}), 3);
   });
-  CouplingOptions options;
-  options.kind = kind;
+  const CouplingOptions options{.kind = kind};
   Coupling a(both.source, both.target, options), b(other, both.target, options);
   auto search_a = a.search(), search_b = b.search();
   co_await search_a;
@@ -217,8 +215,7 @@ Task to_halves(TransferKind kind) {
     of_right = patches(right, 4);
     target = patches(kuhn_mesh({6}), 5);
   });
-  CouplingOptions options;
-  options.kind = kind;
+  const CouplingOptions options{.kind = kind};
   Coupling a(of_left, target, options), b(of_right, target, options);
   co_await a.search();
   co_await b.search();
@@ -240,15 +237,9 @@ Task to_halves(TransferKind kind) {
   });
 }
 
-TaskOf<std::map<GlobalId, double>> values_of(DistributedMesh mesh) {
-  const Outcome all = co_await mesh.workers.reduce<&Worker::gather>();
-  std::map<GlobalId, double> values;
-  for (std::size_t i = 0; i < all.points.size(); ++i) values[all.points[i]] = all.values[i];
-  co_return values;
-}
 /// A Transfer from a mesh to itself, which smooths: each application reads what the one before it
 /// has written.
-TaskOf<std::map<GlobalId, double>> smooth(int n_times, bool at_once) {
+TaskOf<std::vector<double>> smooth(int n_times, bool at_once) {
   const TetMesh mesh = kuhn_mesh({4});
   std::vector<double> field;
   for (const Point& p : mesh.points) field.push_back(std::sin(9 * p[0]) * p[1] + p[2] * p[2]);
@@ -256,9 +247,7 @@ TaskOf<std::map<GlobalId, double>> smooth(int n_times, bool at_once) {
   co_await epoch([&] {
     smoothed = scatter(mesh, {{"f", 1, field}}, 5, PartitionMethod::curve, 1);
   });
-  CouplingOptions options;
-  options.kind = TransferKind::conservative_lumped;
-  Transfer transfer(smoothed, smoothed, options);
+  Transfer transfer(smoothed, smoothed, {.kind = TransferKind::conservative_lumped});
   co_await transfer.search();
   std::vector<Task> tasks;
   for (int n = 0; n < n_times; ++n) {
@@ -267,7 +256,7 @@ TaskOf<std::map<GlobalId, double>> smooth(int n_times, bool at_once) {
     if (!at_once) co_await last;
   }
   for (Task& task : tasks) co_await task;
-  auto values = co_await values_of(smoothed);
+  std::vector<double> values = (co_await test::gathered(smoothed)).values;
   co_await epoch([&] { transfer.destroy(); });
   co_return values;
 }

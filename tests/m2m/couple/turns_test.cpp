@@ -4,12 +4,12 @@
 #include "m2m/mesh_parts.hpp"
 #include "m2m/transfer.hpp"
 #include "runtime/more/testing.hpp"
+#include "tests/m2m/gathered.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/n_seeds.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <vector>
 
 using namespace tess;
@@ -69,11 +69,8 @@ struct Range {
 };
 
 Task range_of(ArrayProxy<Patch> target, Range* range) {
-  Future<double> least, greatest;
-  target.broadcast<&Patch::least>(least.callback());
-  target.broadcast<&Patch::greatest>(greatest.callback());
-  range->least = co_await least;
-  range->greatest = co_await greatest;
+  range->least = co_await target.reduce<&Patch::least>();
+  range->greatest = co_await target.reduce<&Patch::greatest>();
 }
 
 /// What the target has after the first of two applications, and after both. They are those of one
@@ -85,9 +82,7 @@ struct Seen {
 Task apply_twice(TransferKind kind, bool second_by_copy, Seen& seen) {
   ArrayProxy<Patch> source, target;
   co_await epoch([&] { source = patches(3, 4), target = patches(4, 3); });
-  CouplingOptions options;
-  options.kind = kind;
-  Coupling coupling(source, target, options);
+  Coupling coupling(source, target, {.kind = kind});
   co_await coupling.search();
   Coupling copy = coupling;
   co_await epoch([&] { target.broadcast<&Patch::forget>(); });
@@ -99,13 +94,6 @@ Task apply_twice(TransferKind kind, bool second_by_copy, Seen& seen) {
   co_await range_of(target, &seen.both);
 }
 
-using ValueOf = std::map<GlobalId, double>;
-Task values_of(DistributedMesh mesh, ValueOf* values) {
-  Future<Outcome> outcome;
-  mesh.workers.broadcast<&Worker::gather>(outcome.callback());
-  const Outcome all = co_await outcome;
-  for (std::size_t i = 0; i < all.points.size(); ++i) (*values)[all.points[i]] = all.values[i];
-}
 DistributedMesh scatter_with(const TetMesh& mesh, const std::vector<double>& values,
                              std::int32_t n_parts) {
   return scatter(mesh, {{"f", 1, values}}, n_parts, PartitionMethod::curve, 1);
@@ -116,9 +104,8 @@ struct Missing {
   std::ptrdiff_t after_first = 0, after_second = 0;
 };
 Task count_missing(DistributedMesh mesh, std::ptrdiff_t* n) {
-  ValueOf values;
-  co_await values_of(mesh, &values);
-  *n = std::ranges::count_if(values, [](const auto& row) { return row.second == nothing; });
+  const std::vector<double> values = (co_await test::gathered(mesh)).values;
+  *n = std::ranges::count(values, nothing);
 }
 Task transfer_twice(TransferKind kind, bool second_first, Missing& missing) {
   const TetMesh from = kuhn_mesh({3}), to = kuhn_mesh({4});
@@ -127,9 +114,7 @@ Task transfer_twice(TransferKind kind, bool second_first, Missing& missing) {
     source = scatter_with(from, std::vector<double>(from.n_points(), 1), 4);
     target = scatter_with(to, std::vector<double>(to.n_points(), nothing), 3);
   });
-  CouplingOptions options;
-  options.kind = kind;
-  Transfer transfer(source, target, options);
+  Transfer transfer(source, target, {.kind = kind});
   co_await transfer.search();
   Task first = transfer.apply(), second = transfer.apply();
   if (second_first) {
@@ -157,22 +142,20 @@ Task apply_after_error(Range& both) {
 }
 
 /// A kind that smooths, from a mesh to itself: the second application reads what the first wrote.
-Task smooth_twice(bool at_once, ValueOf& values) {
+Task smooth_twice(bool at_once, std::vector<double>& values) {
   const TetMesh mesh = kuhn_mesh({4});
   std::vector<double> field;
   for (const Point& p : mesh.points) field.push_back(std::sin(9 * p[0]) * p[1] + p[2] * p[2]);
   DistributedMesh smoothed;
   co_await epoch([&] { smoothed = scatter_with(mesh, field, 5); });
-  CouplingOptions options;
-  options.kind = TransferKind::conservative_lumped;
-  Transfer transfer(smoothed, smoothed, options);
+  Transfer transfer(smoothed, smoothed, {.kind = TransferKind::conservative_lumped});
   co_await transfer.search();
   Task first = transfer.apply();
   if (!at_once) co_await first;
   Task second = transfer.apply();
   if (at_once) co_await first;
   co_await second;
-  co_await values_of(smoothed, &values);
+  values = (co_await test::gathered(smoothed)).values;
 }
 
 }  // namespace
@@ -184,8 +167,7 @@ TEST_CASE("of two applications to one member each ends after its values, and the
       test::for_seeds(1, test::n_seeds(30) + 1, [&](std::uint64_t seed) {
         const test::Machine machine{.pes = 1 + static_cast<int>(seed % 5), .seed = seed};
         Seen seen;
-        machine.run([&]() -> Task { return apply_twice(kind, second_by_copy, seen); })
-            .require_success();
+        machine.run([&] { return apply_twice(kind, second_by_copy, seen); }).require_success();
         REQUIRE(seen.first.least > 1 - 1e-9);  // the second one may be on its way
         REQUIRE(seen.both.is(2));
       });
@@ -194,7 +176,7 @@ TEST_CASE("of two applications to one member each ends after its values, and the
 TEST_CASE("an application whose last step throws passes its turn on", "[m2m][turns]") {
   Seen seen;
   const test::Machine machine{.pes = 3};
-  machine.run([&]() -> Task { return apply_after_error(seen.both); }).require_success();
+  machine.run([&] { return apply_after_error(seen.both); }).require_success();
   CHECK(seen.both.is(2));
 }
 
@@ -205,8 +187,7 @@ TEST_CASE("a Transfer that is applied again meanwhile has moved all values when 
       test::for_seeds(1, test::n_seeds(30) + 1, [&](std::uint64_t seed) {
         const test::Machine machine{.pes = 1 + static_cast<int>(seed % 5), .seed = seed};
         Missing missing;
-        machine.run([&]() -> Task { return transfer_twice(kind, second_first, missing); })
-            .require_success();
+        machine.run([&] { return transfer_twice(kind, second_first, missing); }).require_success();
         REQUIRE(missing.after_first == 0);
         REQUIRE(missing.after_second == 0);
       });
@@ -214,14 +195,14 @@ TEST_CASE("a Transfer that is applied again meanwhile has moved all values when 
 
 TEST_CASE("a Transfer from a mesh to itself reads what its application before has written",
           "[m2m][turns]") {
-  ValueOf want;
+  std::vector<double> want;
   const test::Machine one{.pes = 1};
-  one.run([&]() -> Task { return smooth_twice(false, want); }).require_success();
+  one.run([&] { return smooth_twice(false, want); }).require_success();
   REQUIRE(want.size() == 125);
   test::for_seeds(1, test::n_seeds(30) + 1, [&](std::uint64_t seed) {
     const test::Machine machine{.pes = 1 + static_cast<int>(seed % 5), .seed = seed};
-    ValueOf got;
-    machine.run([&]() -> Task { return smooth_twice(true, got); }).require_success();
+    std::vector<double> got;
+    machine.run([&] { return smooth_twice(true, got); }).require_success();
     const bool same = got == want;
     REQUIRE(same);
   });

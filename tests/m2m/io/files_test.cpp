@@ -14,12 +14,8 @@
 #include <exodusII.h>
 
 using namespace tess::m2m;
-using tess::test::as_gmsh;
-using tess::test::damage_everywhere;
-using tess::test::message_of;
-using tess::test::Scratch;
-using tess::test::shared_data;
-using tess::test::slurp;
+using tess::test::as_gmsh, tess::test::damage_everywhere, tess::test::message_of,
+    tess::test::Scratch, tess::test::shared_data, tess::test::slurp;
 
 namespace {
 
@@ -44,18 +40,13 @@ std::string mixed_file(const Scratch& scratch, const char* tet_type, int n_tet_v
   const std::array<double, 5> x{0, 1, 0, 0, 1}, y{0, 0, 1, 0, 1}, z{0, 0, 0, 1, 1};
   ex_put_init(id, "mixed", 3, 5, 7, 4, 1, 2);
   ex_put_coord(id, x.data(), y.data(), z.data());
-  const std::vector<int> triangles{1, 2, 3, 1, 2, 4}, bars{1, 2, 2, 3, 3, 4};
   std::vector<int> first{1, 2, 3, 4}, second{2, 3, 4, 5};
   first.resize(static_cast<std::size_t>(n_tet_vertices), 1);
   second.resize(static_cast<std::size_t>(n_tet_vertices), 1);
-  const auto block = [&](int number, const char* type, int n, int n_vertices, const auto& list) {
-    ex_put_block(id, EX_ELEM_BLOCK, number, type, n, n_vertices, 0, 0, 0);
-    ex_put_conn(id, EX_ELEM_BLOCK, number, list.data(), nullptr, nullptr);
-  };
-  block(20, "tri3", 2, 3, triangles);
-  block(21, tet_type, 1, n_tet_vertices, first);
-  block(22, "BAR2", 3, 2, bars);
-  block(23, tet_type, 1, n_tet_vertices, second);
+  tess::test::put_block(id, 20, "tri3", 2, {1, 2, 3, 1, 2, 4});
+  tess::test::put_block(id, 21, tet_type, 1, first);
+  tess::test::put_block(id, 22, "BAR2", 3, {1, 2, 2, 3, 3, 4});
+  tess::test::put_block(id, 23, tet_type, 1, second);
   const std::array<int, 2> elements{3, 7}, sides{1, 4}, mixed{1, 7}, mixed_sides{1, 2};
   ex_put_set_param(id, EX_SIDE_SET, 1, 2, 0);
   ex_put_set(id, EX_SIDE_SET, 1, elements.data(), sides.data());
@@ -70,22 +61,10 @@ std::string mixed_file(const Scratch& scratch, const char* tet_type, int n_tet_v
 
 }  // namespace
 
-TEST_CASE("gmsh files of both versions and modes give the same mesh, also with gaps between tags",
-          "[m2m][io]") {
-  const TetMesh mesh = kuhn_mesh({2, 0.1});
-  for (const bool legacy : {false, true}) {
-    for (const bool binary : {false, true}) {
-      for (const std::uint64_t gap : {1U, 1000U, 30000000U}) {
-        CAPTURE(legacy, binary, gap);
-        const TetMesh read = read_gmsh("test", as_gmsh(mesh, legacy, binary, gap));
-        CHECK(read.points == mesh.points);
-        CHECK(read.tets == mesh.tets);
-      }
-    }
-  }
-}
-
-TEST_CASE("MSH 2.0 and 2.1 are read as 2.2, and behind a byte order mark", "[m2m][io]") {
+TEST_CASE(
+    "gmsh files of all versions and modes give the same mesh, with gaps between tags or a byte "
+    "order mark",
+    "[m2m][io]") {
   const Scratch scratch;
   const TetMesh mesh = kuhn_mesh({2, 0.1});
   for (const bool binary : {false, true})
@@ -93,6 +72,11 @@ TEST_CASE("MSH 2.0 and 2.1 are read as 2.2, and behind a byte order mark", "[m2m
       CAPTURE(version, binary);
       std::string text = as_gmsh(mesh, version[0] == '2', binary, 1);
       text.replace(text.find('\n') + 1, 3, version);
+      for (const std::uint64_t gap : {1000U, 30000000U}) {  // between tags
+        const TetMesh read = read_gmsh("test", as_gmsh(mesh, version[0] == '2', binary, gap));
+        CHECK(read.points == mesh.points);
+        CHECK(read.tets == mesh.tets);
+      }
       for (const char* mark : {"", "\xEF\xBB\xBF"}) {
         const std::string path = scratch.write("a.msh", mark + text);
         const TetMesh read = read_mesh(path);
@@ -107,8 +91,8 @@ TEST_CASE("MSH 2.0 and 2.1 are read as 2.2, and behind a byte order mark", "[m2m
     }
   std::string other = as_gmsh(mesh, false, false, 1);
   other.replace(other.find("4.1"), 3, "4.0");
-  CHECK_THAT(message_of([&] { (void)read_mesh(scratch.write("a.msh", other)); }),
-             Catch::Contains("is MSH 4; only 2.0 to 2.2 and 4.1 are supported"));
+  CHECK_THROWS_WITH(read_mesh(scratch.write("a.msh", other)),
+                    Contains("is MSH 4; only 2.0 to 2.2 and 4.1 are supported"));
 }
 
 TEST_CASE("sections of gmsh that are repeated are all read, and those of other kinds are named",
@@ -154,7 +138,7 @@ TEST_CASE("sections of gmsh that are repeated are all read, and those of other k
         (void)read_mesh(scratch.write("again.msh", nodes_twice + "$Nodes\n1\n2 9 9 9\n$EndNodes\n"
                                                                  "$Elements\n0\n$EndElements\n"));
       }),
-      Catch::Contains("node tag 2 occurs twice"));
+      Contains("node tag 2 occurs twice"));
 }
 
 TEST_CASE("a written mesh is read back with its fields, and no other file remains", "[m2m][io]") {
@@ -194,8 +178,8 @@ TEST_CASE("a written mesh is read back with its fields, and no other file remain
   CHECK(values[1] == -2);
   ex_close(id);
 
-  CHECK_THAT(message_of([&] { write_exodus(scratch.path("no/such/folder.exo"), mesh, {}); }),
-             Catch::Contains("no/such/folder.exo: cannot be written"));
+  CHECK_THROWS_WITH(write_exodus(scratch.path("no/such/folder.exo"), mesh, {}),
+                    Contains("no/such/folder.exo: cannot be written"));
   CHECK(scratch.n_files() == 1);
 }
 
@@ -226,17 +210,17 @@ TEST_CASE("blocks, side sets and node sets are read back with numbers, names and
 
   TetMesh bad = mesh;
   bad.blocks.pop_back();
-  CHECK_THAT(message_of([&] { validate(bad); }), Catch::Contains("blocks have 40 of 48"));
+  CHECK_THROWS_WITH(validate(bad), Contains("blocks have 40 of 48"));
   bad = mesh;
   bad.side_sets[0].entries[1].tet = 48;
-  CHECK_THAT(message_of([&] { validate(bad); }), Catch::Contains("side set 4 names side 4 of tet"));
+  CHECK_THROWS_WITH(validate(bad), Contains("side set 4 names side 4 of tet"));
   bad = mesh;
   bad.node_sets[1].entries[0] = 27;
-  CHECK_THAT(message_of([&] { validate(bad); }), Catch::Contains("node set 6 names vertex 27"));
+  CHECK_THROWS_WITH(validate(bad), Contains("node set 6 names vertex 27"));
   bad = mesh;
   bad.blocks[0].id = std::int64_t{1} << 40;
-  CHECK_THAT(message_of([&] { write_exodus(path, bad, {}); }),
-             Catch::Contains("block 1099511627776 'fluid' cannot be written"));
+  CHECK_THROWS_WITH(write_exodus(path, bad, {}),
+                    Contains("block 1099511627776 'fluid' cannot be written"));
 }
 
 TEST_CASE("surface and line elements beside tetrahedra are skipped, and counted by type",
@@ -260,9 +244,9 @@ TEST_CASE("surface and line elements beside tetrahedra are skipped, and counted 
         std::pair{"TET4", 10}, std::pair{"HEX8", 4}, std::pair{"superelement", 4}}) {
     CAPTURE(type);
     const std::string path = mixed_file(scratch, type, n);
-    CHECK_THAT(message_of([&] { (void)read_mesh(path); }),
-               Catch::Contains("block 21 has elements of type") &&
-                   Catch::Contains(type, Catch::CaseSensitive::No) && Catch::Contains(path));
+    CHECK_THROWS_WITH(read_mesh(path), Contains("block 21 has elements of type") &&
+                                           Contains(type, Catch::CaseSensitive::No) &&
+                                           Contains(path));
   }
   const TetMesh gmsh = read_gmsh("test", as_gmsh(kuhn_mesh({1}), false, false, 1));
   CHECK(gmsh.skipped == std::vector<Skipped>{{"point", 1}});
@@ -279,18 +263,10 @@ TEST_CASE("hexahedra, wedges and pyramids of ExodusII are split, and side sets f
   const std::array<double, 12> z{0, 0, 0, 0, 1, 1, 1, 1, 2, 0, 1, 0};
   ex_put_init(id, "solids", 3, 12, 4, 4, 0, 2);
   ex_put_coord(id, x.data(), y.data(), z.data());
-  const std::array<int, 8> hex{1, 2, 3, 4, 5, 6, 7, 8};
-  const std::array<int, 5> pyramid{5, 6, 7, 8, 9};
-  const std::array<int, 6> wedge{2, 10, 3, 6, 11, 7};
-  const std::array<int, 4> tet{10, 12, 3, 11};
-  const auto block = [&](int number, const char* type, const auto& vertices) {
-    ex_put_block(id, EX_ELEM_BLOCK, number, type, 1, static_cast<int>(vertices.size()), 0, 0, 0);
-    ex_put_conn(id, EX_ELEM_BLOCK, number, vertices.data(), nullptr, nullptr);
-  };
-  block(3, "HEX8", hex);
-  block(4, "PYRAMID", pyramid);
-  block(5, "TETRA", tet);
-  block(6, "wedge6", wedge);
+  tess::test::put_block(id, 3, "HEX8", 1, {1, 2, 3, 4, 5, 6, 7, 8});
+  tess::test::put_block(id, 4, "PYRAMID", 1, {5, 6, 7, 8, 9});
+  tess::test::put_block(id, 5, "TETRA", 1, {10, 12, 3, 11});
+  tess::test::put_block(id, 6, "wedge6", 1, {2, 10, 3, 6, 11, 7});
   const auto side_set = [&](int number, int element, int side) {
     const std::array<double, 4> factors{1, 2, 3, 4};
     ex_put_set_param(id, EX_SIDE_SET, number, 1, 4);
@@ -346,7 +322,7 @@ TEST_CASE("solids of gmsh are split; a tet10 of gmsh has its last two vertices s
   CHECK(split_text(tet10) == "1 TET10 into 8 tetrahedra");
   CHECK_THAT(
       message_of([] { (void)read_gmsh("old", "$NOD\n1\n1 0 0 0\n$ENDNOD\n$ELM\n0\n$ENDELM\n"); }),
-      Catch::Contains("old: is MSH 1; only 2.0 to 2.2 and 4.1 are supported"));
+      Contains("old: is MSH 1; only 2.0 to 2.2 and 4.1 are supported"));
   for (std::size_t t = 0; t < 8; ++t)
     CHECK(signed_volume(tet10, t) == Approx(1.0 / 48).epsilon(1e-14));
   const TetMesh solids = read_gmsh(
@@ -376,10 +352,9 @@ TEST_CASE("a real mesh keeps its blocks and sets when it is written", "[m2m][io]
 
 TEST_CASE("gmsh files with missing or flipped bits give one line of error", "[m2m][io]") {
   const TetMesh mesh = kuhn_mesh({2});
-  for (const bool legacy : {false, true}) {
+  for (const bool legacy : {false, true})
     for (const bool binary : {false, true})
       damage_everywhere("cut.msh", as_gmsh(mesh, legacy, binary, 3), 200, 400, as_mesh);
-  }
 }
 
 TEST_CASE("ExodusII files with missing or flipped bits give one line of error", "[m2m][io]") {
@@ -412,6 +387,6 @@ TEST_CASE("a NetCDF-4 file is read, and a truncated one is refused", "[m2m][io]"
   for (const std::size_t kept :
        {std::size_t{5}, std::size_t{100}, bytes.size() / 2, bytes.size() - 1}) {
     const std::string cut = scratch.write("cut.exo", bytes.substr(0, kept));
-    CHECK_THAT(message_of([&] { (void)read_mesh(cut); }), Catch::Contains("truncated"));
+    CHECK_THROWS_WITH(read_mesh(cut), Contains("truncated"));
   }
 }

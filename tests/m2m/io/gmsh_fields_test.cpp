@@ -7,9 +7,7 @@
 #include "tests/support/scratch.hpp"
 
 using namespace tess::m2m;
-using tess::test::as_gmsh;
-using tess::test::message_of;
-using tess::test::Scratch;
+using tess::test::as_gmsh, tess::test::message_of, tess::test::Scratch;
 
 namespace {
 
@@ -31,11 +29,11 @@ TEST_CASE("more rows of a gmsh section than it announces are refused", "[m2m][io
   };
   CHECK(refusal_of_section(scratch, section("7")).empty());
   CHECK_THAT(refusal_of_section(scratch, section("6")),
-             Catch::Contains("expected $EndElementData, found '1'"));
+             Contains("expected $EndElementData, found '1'"));
 }
 
 TEST_CASE("a gmsh section has no more names than fit in the file", "[m2m][io]") {
   const Scratch scratch;
   CHECK_THAT(refusal_of_section(scratch, "$ElementData\n4294967295\n\"p\"\n$EndElementData\n"),
-             Catch::Contains("4294967295 names do not fit in the file"));
+             Contains("4294967295 names do not fit in the file"));
 }

@@ -10,9 +10,7 @@
 #include <string>
 
 using namespace tess::m2m;
-using tess::test::as_gmsh;
-using tess::test::message_of;
-using tess::test::Scratch;
+using tess::test::as_gmsh, tess::test::Scratch;
 
 namespace {
 
@@ -58,6 +56,6 @@ TEST_CASE("gmsh's text may have plus signs and vanishing numbers; parametric nod
   CHECK(read.points == mesh.points);
   CHECK(read.tets == mesh.tets);
   replace_all("Nodes\n", "ParametricNodes\n");
-  CHECK_THAT(message_of([&] { (void)read_mesh(scratch.write("parametric.msh", text)); }),
-             Catch::Contains("Mesh.SaveParametric 0"));
+  CHECK_THROWS_WITH(read_mesh(scratch.write("parametric.msh", text)),
+                    Contains("Mesh.SaveParametric 0"));
 }

@@ -61,9 +61,8 @@ TEST_CASE("a side set names the wall", "[m2m][overset]") {
   REQUIRE(boundary.wall.size() == 2);
   for (const auto& triangle : boundary.wall)
     for (const VertexId v : triangle) CHECK(mesh.points[static_cast<std::size_t>(v)][2] == 0);
-  CHECK_THROWS_WITH(overset_boundary(mesh, "above"),
-                    Catch::Contains("no side set above; it has below"));
+  CHECK_THROWS_WITH(overset_boundary(mesh, "above"), Contains("no side set above; it has below"));
   mesh.side_sets.push_back({.id = 4, .name = "", .entries = {below.entries[0]}});
   CHECK(overset_boundary(mesh, "4").wall.size() == 1);
-  CHECK_THROWS_WITH(overset_boundary(mesh, "5"), Catch::Contains("5; it has below, 4"));
+  CHECK_THROWS_WITH(overset_boundary(mesh, "5"), Contains("5; it has below, 4"));
 }

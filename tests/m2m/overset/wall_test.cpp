@@ -12,8 +12,7 @@
 
 using namespace tess;
 using namespace tess::m2m;
-using overset::Body;
-using tess::test::VoxelBody;
+using overset::Body, tess::test::VoxelBody;
 
 namespace {
 
@@ -123,8 +122,7 @@ TEST_CASE("a shell that faces the other way is a cavity, one that faces the same
           "[m2m][overset]") {
   std::vector<Point> points;
   Triangles both = add_box(points, {0, 0, 0}, {1, 1, 1});
-  Triangles inner = add_box(points, {0.25, 0.25, 0.25}, {0.75, 0.75, 0.75});
-  Triangles turned = both;
+  Triangles inner = add_box(points, {0.25, 0.25, 0.25}, {0.75, 0.75, 0.75}), turned = both;
   both.insert(both.end(), inner.begin(), inner.end());
   for (const auto& [a, b, c] : inner) turned.push_back({a, c, b});
   const Wall solid(points, both), hollow(points, turned);
@@ -151,12 +149,11 @@ TEST_CASE("holes and flipped triangles of a wall are capped", "[m2m][overset]") 
   const test::VoxelSurface whole(body, random, place);
   for (const bool flipped : {false, true}) {
     test::VoxelSurface surface = whole;
-    for (const std::size_t t : {std::size_t{77}, std::size_t{30}, std::size_t{5}}) {
+    for (const std::size_t t : {std::size_t{77}, std::size_t{30}, std::size_t{5}})
       if (flipped)
         std::swap(surface.triangles[t][0], surface.triangles[t][1]);
       else
         surface.triangles.erase(surface.triangles.begin() + static_cast<std::ptrdiff_t>(t));
-    }
     const Wall wall(surface.points, surface.triangles);
     CHECK(wall.rim().n_edges == (flipped ? 18 : 9));
     CHECK(wall.rim().n_loops == (flipped ? 6 : 3));
@@ -193,7 +190,7 @@ TEST_CASE("a wall without a side is closed, one with half of its sides is refuse
   CHECK(wall.locate({0.9, 0.5, 0.5}) == Containment::inside);
   CHECK(wall.locate({1.1, 0.5, 0.5}) == Containment::outside);
   box.resize(6);
-  CHECK_THROWS_WITH(Wall(points, box), Catch::Contains("the wall is open"));
+  CHECK_THROWS_WITH(Wall(points, box), Contains("the wall is open"));
 }
 
 TEST_CASE("a closed wall whose triangles are turned is refused for that, with an edge",
@@ -202,19 +199,18 @@ TEST_CASE("a closed wall whose triangles are turned is refused for that, with an
   Triangles box = add_box(points, {0, 0, 0}, {1, 1, 1});
   for (std::size_t t = 0; t < box.size(); t += 2) std::swap(box[t][1], box[t][2]);
   box.insert(box.begin(), {0, 0, 1});  // without an area
-  CHECK_THROWS_WITH(Wall(points, box),
-                    Catch::Contains("not oriented alike: triangles 2 and 5 (from 0)") &&
-                        Catch::Contains("in the same direction") && !Catch::Contains("open"));
+  CHECK_THROWS_WITH(Wall(points, box), Contains("not oriented alike: triangles 2 and 5 (from 0)") &&
+                                           Contains("in the same direction") && !Contains("open"));
 }
 
 TEST_CASE("a wall that cannot be used is refused", "[m2m][overset]") {
   std::vector<Point> points;
   Triangles box = add_box(points, {0, 0, 0}, {1, 1, 1});
-  CHECK_THROWS_WITH(Wall(points, {}), Catch::Contains("no triangle"));
-  CHECK_THROWS_WITH(Wall(points, Triangles{{0, 0, 1}}), Catch::Contains("no triangle"));
-  CHECK_THROWS_WITH(Wall(points, Triangles{{0, 1, 8}}), Catch::Contains("names point 8 of 8"));
+  CHECK_THROWS_WITH(Wall(points, {}), Contains("no triangle"));
+  CHECK_THROWS_WITH(Wall(points, Triangles{{0, 0, 1}}), Contains("no triangle"));
+  CHECK_THROWS_WITH(Wall(points, Triangles{{0, 1, 8}}), Contains("names point 8 of 8"));
   points[3][1] = std::nan("");
-  CHECK_THROWS_WITH(Wall(points, box), Catch::Contains("point 3 of the wall"));
+  CHECK_THROWS_WITH(Wall(points, box), Contains("point 3 of the wall"));
 }
 
 TEST_CASE("the part of a wall that a box sees gives the same answers there", "[m2m][overset]") {

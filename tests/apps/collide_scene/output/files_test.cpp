@@ -38,7 +38,7 @@ TEST_CASE("the file of hits has each triangle with its hits and its model",
           "[apps][collide_scene]") {
   const std::vector<std::uint32_t> n_hits{5, 7};
   const std::string vtp = hits_vtp(two_triangles(), n_hits);
-  CHECK(vtp.find("NumberOfPoints=\"6\" NumberOfPolys=\"2\"") != std::string::npos);
+  CHECK_THAT(vtp, Contains("NumberOfPoints=\"6\" NumberOfPolys=\"2\""));
   CHECK(array_of<std::uint32_t>(vtp, "hits") == n_hits);
   CHECK(array_of<std::uint32_t>(vtp, "model") == std::vector<std::uint32_t>{0, 1});
   CHECK(array_of<std::int64_t>(vtp, "offsets") == std::vector<std::int64_t>{3, 6});
@@ -58,7 +58,7 @@ TEST_CASE("boxes are six faces in the file of hits", "[apps][collide_scene]") {
 
 TEST_CASE("the file of pairs has a segment between the centres of each", "[apps][collide_scene]") {
   const std::string vtp = pairs_vtp(two_triangles(), std::vector<ScenePair>{{0, 1}});
-  CHECK(vtp.find("NumberOfLines=\"1\"") != std::string::npos);
+  CHECK_THAT(vtp, Contains("NumberOfLines=\"1\""));
   CHECK(array_of<double>(vtp, "Points") == std::vector<double>{2, 2, 0, 1.5, 1.5, 0});
   CHECK(array_of<std::uint32_t>(vtp, "second") == std::vector<std::uint32_t>{1});
 }
@@ -84,15 +84,13 @@ TEST_CASE("the picture shows scenes of points, far away and of one place",
   points.boxes = {{{1e12, 1, 1}, {1e12, 1, 1}}, {{1e12, 1, 1}, {1e12, 1, 1}}};
   points.description = "<&>";
   const std::string svg = picture(points, std::vector<std::uint32_t>{1, 1});
-  CHECK(svg.find("2 of 2 objects collide") != std::string::npos);
-  CHECK(svg.find("&lt;&amp;&gt;") != std::string::npos);
-  CHECK(svg.find("nan") == std::string::npos);
+  CHECK_THAT(svg, Contains("2 of 2 objects collide"));
+  CHECK_THAT(svg, Contains("&lt;&amp;&gt;"));
+  CHECK_THAT(svg, !Contains("nan"));
   // Many triangles become rows of pixels.
   const Scene wave = make_scene("wave:131072");
-  CHECK(picture(wave, std::vector<std::uint32_t>(wave.n_objects(), 0)).find("M0 ") ==
-        std::string::npos);
-  CHECK(picture(wave, std::vector<std::uint32_t>(wave.n_objects(), 0)).find("h") !=
-        std::string::npos);
+  CHECK_THAT(picture(wave, std::vector<std::uint32_t>(wave.n_objects(), 0)), !Contains("M0 "));
+  CHECK_THAT(picture(wave, std::vector<std::uint32_t>(wave.n_objects(), 0)), Contains("h"));
 }
 
 TEST_CASE("files that cannot be written are refused before the run", "[apps][collide_scene]") {

@@ -10,10 +10,7 @@
 #include <numbers>
 
 using namespace collide_scene;
-using tess::collide::Aabb;
-using tess::collide::Point;
-using tess::collide::Touching;
-using tess::collide::Triangle;
+using tess::collide::Aabb, tess::collide::Point, tess::collide::Touching, tess::collide::Triangle;
 
 namespace {
 
@@ -177,7 +174,7 @@ TEST_CASE("crossing segments have a quarter of n squared pairs", "[apps][collide
 TEST_CASE("a text that is no scene is refused with the scenes there are", "[apps][collide_scene]") {
   CHECK(find_scene_kind("mesh.obj") == nullptr);
   CHECK(find_scene_kind("boxes:12") != nullptr);
-  CHECK_THROWS_WITH(make_scene("cubes:3"), Catch::Contains("boxes"));
+  CHECK_THROWS_WITH(make_scene("cubes:3"), Contains("boxes"));
   for (const char* text : {"boxes:", "boxes:0", "boxes:-3", "boxes:1e6", "boxes:99999999999"})
-    CHECK_THROWS_WITH(make_scene(text), Catch::Contains("no number from 1 to"));
+    CHECK_THROWS_WITH(make_scene(text), Contains("no number from 1 to"));
 }

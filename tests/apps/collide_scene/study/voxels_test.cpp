@@ -49,8 +49,8 @@ TEST_CASE("a study in which one voxel size loses a pair does not agree", "[apps]
   CHECK(agrees(rows));
   rows[3].agrees = false;
   CHECK_FALSE(agrees(rows));
-  CHECK(voxel_report().table(rows).find("OTHER PAIRS") != std::string::npos);
+  CHECK_THAT(voxel_report().table(rows), Contains("OTHER PAIRS"));
   rows[3].note = "too small";  // a refusal is no wrong answer
   CHECK(agrees(rows));
-  CHECK(voxel_report().csv(rows).find("too small") != std::string::npos);
+  CHECK_THAT(voxel_report().csv(rows), Contains("too small"));
 }

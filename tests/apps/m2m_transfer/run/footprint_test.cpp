@@ -1,7 +1,7 @@
 #include "apps/m2m_transfer/run/measure.hpp"
 #include "runtime/wire/machine/simulated.hpp"
-#include "runtime/wire/machine/threads.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/run.hpp"
 
 using namespace tess;
 using namespace tess::m2m;
@@ -56,9 +56,8 @@ TEST_CASE("bytes that PEs send between processes are counted once", "[apps][foot
 }
 
 TEST_CASE("messages within a process are not counted", "[apps][footprint]") {
-  Setup setup{make_threads_machine(2), {}};
   Footprint before, after;
-  REQUIRE(run(setup, [&] { return compare(before, after); }) == 0);
+  REQUIRE(tests::run_threads(2, [&] { return compare(before, after); }).exit_code == 0);
   CHECK(after.bytes_sent == 0);
 }
 

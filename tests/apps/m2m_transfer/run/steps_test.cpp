@@ -13,12 +13,8 @@
 
 using namespace tess;
 using namespace m2m_transfer;
-using tess::test::Scratch;
-using tess::test::slurp;
-using tests::results_of;
-using tests::simulated;
-using tests::threads;
-using tests::Words;
+using tess::test::Scratch, tess::test::slurp, tests::results_of, tests::simulated, tests::threads,
+    tests::Words;
 
 namespace {
 
@@ -203,10 +199,10 @@ TEST_CASE("all parts of a .pvtu together have the result that one file has", "[a
   const std::string index = slurp(scratch.path("parts.pvtu"));
   for (int k = 0; k < 5; ++k) {
     const std::string name = "parts." + std::to_string(k) + ".vtu";
-    CHECK(index.find("Source=\"" + name + "\"") != std::string::npos);
+    CHECK_THAT(index, Contains("Source=\"" + name + "\""));
     n_of_parts += add(scratch.path(name), parts);
   }
-  CHECK(index.find("parts.5.vtu") == std::string::npos);
+  CHECK_THAT(index, !Contains("parts.5.vtu"));
   CHECK(n_of_parts == n_tets);
   CHECK(parts == whole);
   CHECK(std::ranges::any_of(whole, [](const auto& row) { return row.second[2] == 3; }));

@@ -8,12 +8,8 @@
 
 using namespace tess;
 using namespace m2m_transfer;
-using tess::test::Scratch;
-using tess::test::slurp;
-using tests::exit_code;
-using tests::results_of;
-using tests::threads;
-using tests::Words;
+using tess::test::Scratch, tess::test::slurp, tests::exit_code, tests::results_of, tests::threads,
+    tests::Words;
 
 namespace {
 
@@ -106,15 +102,15 @@ TEST_CASE("a study whose error exceeds the bound, or whose order is too low, fai
   CHECK(checks(study).size() == 3);
   CHECK(failures(checks(study)).empty());
   study[1].fields[0].norms.l2 = 0.05;
-  CHECK_THAT(check_rows().table(checks(study)), Catch::Contains("FAILED"));
+  CHECK_THAT(check_rows().table(checks(study)), Contains("FAILED"));
   CHECK_THAT(failures(checks(study)),
-             Catch::Contains("FAILED: linear, a to a, sin: order of L2 at least: claimed "
-                             "1.7500e+00, measured 1.0000e+00") &&
-                 Catch::Contains("finer"));
+             Contains("FAILED: linear, a to a, sin: order of L2 at least: claimed "
+                      "1.7500e+00, measured 1.0000e+00") &&
+                 Contains("finer"));
   study[1].fields[0].norms.l2 = 0.025;
   study[0].fields[0].bound = 0.29;
-  CHECK_THAT(failures(checks(study)), Catch::Contains("claimed 2.9000e-01, measured 3.0000e-01") &&
-                                          !Catch::Contains("finer"));
+  CHECK_THAT(failures(checks(study)),
+             Contains("claimed 2.9000e-01, measured 3.0000e-01") && !Contains("finer"));
   study[0].fields[0].bound = 0.31;
   CHECK(failures(checks(study)).empty());
 }

@@ -10,10 +10,7 @@
 #include <array>
 
 using namespace tess::m2m;
-using tess::test::awkward_field;
-using tess::test::bits_of;
-using tess::test::message_of;
-using tess::test::Scratch;
+using tess::test::awkward_field, tess::test::bits_of, tess::test::message_of, tess::test::Scratch;
 
 TEST_CASE("a .pvtu is read with its fields: the files that it names, in their order", "[m2m][io]") {
   const Scratch scratch;
@@ -53,10 +50,10 @@ TEST_CASE("a .pvtu is read with its fields: the files that it names, in their or
     return message_of([&] { (void)read_mesh(bad); });
   };
   CHECK_THAT(refused(std::string(index).replace(index.find("b.1"), 3, "b.2")),
-             Catch::Contains("b.2.vtu: cannot be opened"));
+             Contains("b.2.vtu: cannot be opened"));
   CHECK_THAT(refused(std::string(index).replace(index.find("b.1.vtu"), 7, "b.pvtu")),
-             Catch::Contains("b.pvtu: holds a VTK PUnstructuredGrid; only UnstructuredGrid"));
-  CHECK_THAT(refused(index.substr(0, index.size() - 5)), Catch::Contains("</VTKFile> is missing"));
+             Contains("b.pvtu: holds a VTK PUnstructuredGrid; only UnstructuredGrid"));
+  CHECK_THAT(refused(index.substr(0, index.size() - 5)), Contains("</VTKFile> is missing"));
   CHECK_THAT(refused("<VTKFile type=\"PUnstructuredGrid\"></VTKFile>"),
-             Catch::Contains("it names no Piece"));
+             Contains("it names no Piece"));
 }

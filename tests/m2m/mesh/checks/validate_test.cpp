@@ -3,6 +3,7 @@
 #include "m2m/mesh_view.hpp"
 #include "runtime/core/error.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/scratch.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -22,12 +23,9 @@ struct OneTet {
   std::int64_t n_owned = 4, n_own_tets = -1;
 
   [[nodiscard]] std::string complaint() const {
-    try {
+    return tess::test::message_of([&] {
       validate({points, tets, point_ids, tet_ids, n_owned, n_own_tets});
-    } catch (const tess::Error& error) {
-      return error.what();
-    }
-    return "";
+    });
   }
 };
 
@@ -39,25 +37,25 @@ TEST_CASE("a piece with bad coordinates, indices or counts is refused by name", 
                            -std::numeric_limits<double>::infinity(), 2e100}) {
     OneTet piece;
     piece.points[2][1] = bad;
-    CHECK(piece.complaint().find("point 2 of a piece, with the id 12, has") != std::string::npos);
+    CHECK_THAT(piece.complaint(), Contains("point 2 of a piece, with the id 12, has"));
   }
   for (const VertexId bad : {-1, 4}) {
     OneTet piece;
     piece.tets[0][3] = bad;
-    CHECK(piece.complaint().find("tetrahedron 0 of a piece, with the id 70, names point") !=
-          std::string::npos);
+    CHECK_THAT(piece.complaint(),
+               Contains("tetrahedron 0 of a piece, with the id 70, names point"));
   }
   OneTet too_many;
   too_many.n_owned = 5;
-  CHECK(too_many.complaint().find("owns 5 of 4 points") != std::string::npos);
+  CHECK_THAT(too_many.complaint(), Contains("owns 5 of 4 points"));
   OneTet halo;
   halo.n_own_tets = 2;
-  CHECK(halo.complaint().find("2 own tetrahedra of 1") != std::string::npos);
+  CHECK_THAT(halo.complaint(), Contains("2 own tetrahedra of 1"));
   halo.n_own_tets = -2;
-  CHECK(halo.complaint().find("-2 own tetrahedra of 1") != std::string::npos);
+  CHECK_THAT(halo.complaint(), Contains("-2 own tetrahedra of 1"));
   OneTet no_ids;
   no_ids.tet_ids.clear();
-  CHECK(no_ids.complaint().find("0 tet_ids") != std::string::npos);
+  CHECK_THAT(no_ids.complaint(), Contains("0 tet_ids"));
 }
 
 TEST_CASE("of several findings the first is named, in whatever order ranges are looked at",
@@ -85,7 +83,7 @@ TEST_CASE("of several findings the first is named, in whatever order ranges are 
     CHECK(all.bad_corner.tet == 1);
     CHECK(all.collapsed.tet == 0);
     CHECK(all.n_collapsed == 9);
-    CHECK_THROWS_WITH(all.refuse_bad_ids("m", 10), Catch::Contains("m: vertex 2 has y = nan"));
-    CHECK_THROWS_WITH(all.refuse_bad_shapes("m", 10), Catch::Contains("9 of 10 tetrahedra"));
+    CHECK_THROWS_WITH(all.refuse_bad_ids("m", 10), Contains("m: vertex 2 has y = nan"));
+    CHECK_THROWS_WITH(all.refuse_bad_shapes("m", 10), Contains("9 of 10 tetrahedra"));
   } while (std::next_permutation(order.begin(), order.end()));
 }

@@ -11,11 +11,8 @@
 #include <random>
 
 using namespace tess::m2m;
-using tess::test::place_points;
-using tess::test::sampled;
-using tess::test::smooth;
-using tess::test::Values;
-using tess::test::view;
+using tess::test::place_points, tess::test::sampled, tess::test::smooth, tess::test::Values,
+    tess::test::view;
 
 namespace {
 
@@ -84,8 +81,7 @@ double worst(const TetMesh& mesh, const std::vector<Point>& targets, std::size_t
 }  // namespace
 
 TEST_CASE("shape functions are 1 at their node and 0 at the others", "[m2m][elements]") {
-  const Tet10Weights corner = tet10_shape({0, 0, 1, 0});
-  const Tet10Weights middle = tet10_shape({0, 0.5, 0, 0.5});
+  const Tet10Weights corner = tet10_shape({0, 0, 1, 0}), middle = tet10_shape({0, 0.5, 0, 0.5});
   for (std::size_t n = 0; n < 10; ++n) {
     CHECK(corner[n] == (n == 2 ? 1 : 0));
     CHECK(middle[n] == (n == 8 ? 1 : 0));

@@ -10,10 +10,8 @@
 #include <numeric>
 
 using namespace tess::m2m;
-using tess::test::overlapping_pairs;
-using tess::test::rows_between;
-using tess::test::TetPair;
-using tess::test::view;
+using tess::test::overlapping_pairs, tess::test::rows_between, tess::test::TetPair,
+    tess::test::view;
 
 namespace {
 

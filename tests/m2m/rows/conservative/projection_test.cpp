@@ -13,15 +13,9 @@
 #include <numeric>
 
 using namespace tess::m2m;
-using tess::test::covered_by;
-using tess::test::place_points;
-using tess::test::rows_between;
-using tess::test::view;
+using tess::test::covered_by, tess::test::place_points, tess::test::rows_between, tess::test::view;
 using Form = Projection::Form;
-using tess::test::ball;
-using tess::test::gaussian;
-using tess::test::sampled;
-using tess::test::Values;
+using tess::test::ball, tess::test::gaussian, tess::test::sampled, tess::test::Values;
 
 namespace {
 

@@ -149,20 +149,16 @@ TEST_CASE("weights reproduce random points, and every point of a box has a tetra
 
 TEST_CASE("a batch gives the same bits as single calls", "[m2m][locate]") {
   for (const double flatness : {1.0, 1e-4, 1e-9}) {
-    TetMesh mesh = kuhn_mesh({4, 0.2});
-    TetMesh queries = kuhn_mesh({5, 0.1});
+    TetMesh mesh = kuhn_mesh({4, 0.2}), queries = kuhn_mesh({5, 0.1});
     const TetMesh coincident = kuhn_mesh({4});
     queries.points.insert(queries.points.end(), mesh.points.begin(), mesh.points.end());
     queries.points.insert(queries.points.end(), coincident.points.begin(), coincident.points.end());
-    for (TetMesh* m : {&mesh, &queries}) {
+    for (TetMesh* m : {&mesh, &queries})
       for (Point& p : m->points) p = {p[0], p[1] - p[2] * flatness, p[1] + p[2] * flatness};
-    }
     std::vector<PointPair> pairs;
-    for (std::size_t t = 0; t < mesh.n_tets(); ++t) {
-      for (std::size_t q = 0; q < queries.n_points(); ++q) {
+    for (std::size_t t = 0; t < mesh.n_tets(); ++t)
+      for (std::size_t q = 0; q < queries.n_points(); ++q)
         pairs.push_back({static_cast<std::int32_t>(t), static_cast<std::int32_t>(q)});
-      }
-    }
     std::vector<Found> found;
     locate_pairs(mesh.points, mesh.tets, queries.points, pairs, found);
     std::size_t next = 0;
@@ -192,9 +188,8 @@ TEST_CASE("weights of flat rotated tetrahedra are within 1e-12", "[m2m][locate]"
       }
       Weights wanted{0.4, 0.3, 0.2, 0.1};
       Point p{};
-      for (std::size_t axis = 0; axis < 3; ++axis) {
+      for (std::size_t axis = 0; axis < 3; ++axis)
         for (std::size_t k = 0; k < 4; ++k) p[axis] += wanted[k] * corners[k][axis];
-      }
       // The weights of the rounded p, from exact volumes.
       Weights exact{orientation_exact(p, corners[1], corners[2], corners[3]),
                     orientation_exact(p, corners[0], corners[3], corners[2]),

@@ -16,11 +16,8 @@
 #include <utility>
 
 using namespace tess::m2m;
-using tess::test::all_element_types;
-using tess::test::ball;
-using tess::test::element_mesh;
-using tess::test::linear_at;
-using tess::test::Values;
+using tess::test::all_element_types, tess::test::ball, tess::test::element_mesh,
+    tess::test::linear_at, tess::test::Values;
 
 namespace {
 

@@ -11,8 +11,7 @@
 #include <functional>
 
 using namespace tess::m2m;
-using tess::test::sampled;
-using tess::test::view;
+using tess::test::sampled, tess::test::view;
 
 namespace {
 

@@ -12,12 +12,8 @@
 #include <set>
 
 using namespace tess::m2m;
-using tess::test::ball;
-using tess::test::place_points;
-using tess::test::sampled;
-using tess::test::smooth;
-using tess::test::Values;
-using tess::test::view;
+using tess::test::ball, tess::test::place_points, tess::test::sampled, tess::test::smooth,
+    tess::test::Values, tess::test::view;
 
 namespace {
 
@@ -64,8 +60,7 @@ TEST_CASE("order 2.8 or better by recovered gradients, 2.0 by linear interpolati
       const TetMesh source = bent ? distorted(n, 0.15) : kuhn_mesh({n});
       const TetMesh target = bent ? distorted(n + 3, 0.1) : kuhn_mesh({n + 3});
       const auto at = place_points(view(source), target.points);
-      const Values values = sampled(source.points, smooth);
-      const Values want = sampled(target.points, smooth);
+      const Values values = sampled(source.points, smooth), want = sampled(target.points, smooth);
       const Values got = second_order(source, at, values);
       Values by_rows(at.size());
       apply(linear_rows(source.tets, at), values, 1, by_rows);
@@ -87,8 +82,7 @@ TEST_CASE("quadratic fields are exact, and rows give the values", "[m2m][reconst
   const auto f = [](const Point& p) { return 1 - p[0] + p[0] * p[1] + 2 * p[2] * p[2]; };
   const TetMesh source = kuhn_mesh({4, 0.2}), target = kuhn_mesh({5, 0.1});
   const auto at = place_points(view(source), target.points);
-  const Values values = sampled(source.points, f);
-  const Values got = second_order(source, at, values);
+  const Values values = sampled(source.points, f), got = second_order(source, at, values);
   Values by_rows(at.size());
   apply(second_order_rows(view(source), at, gradient_rows(view(source))), values, 1, by_rows);
   for (std::size_t i = 0; i < got.size(); ++i) {
@@ -109,8 +103,7 @@ TEST_CASE("limited values lie within those of the tetrahedron or of its patch",
           "[m2m][reconstruct]") {
   const TetMesh source = kuhn_mesh({8, 0.2}), target = kuhn_mesh({13, 0.2});
   const auto at = place_points(view(source), target.points);
-  const Values values = sampled(source.points, ball);
-  const Values free = second_order(source, at, values);
+  const Values values = sampled(source.points, ball), free = second_order(source, at, values);
   CHECK(*std::min_element(free.begin(), free.end()) < -0.05);
   CHECK(*std::max_element(free.begin(), free.end()) > 1.05);
   const Values near = second_order(source, at, values, Limit::tetrahedron);

@@ -6,8 +6,8 @@
 #include "m2m/mesh_piece.hpp"
 #include "runtime/core/hash.hpp"
 #include "runtime/more/testing.hpp"
-#include "runtime/wire/machine/threads.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/run.hpp"
 
 #include <cstring>
 #include <utility>
@@ -108,9 +108,7 @@ Task search_again(std::uint64_t seed, Searches& found) {
     source = create_pieces<MovedPatch>(kuhn_mesh({4}), n_parts);
     target = create_pieces<MovedPatch>(kuhn_mesh({3}), 2);
   });
-  CouplingOptions options;
-  options.policy = Nearest{};
-  options.tolerance = random.chance(0.5) ? 0 : 0.1;
+  const CouplingOptions options{.policy = Nearest{}, .tolerance = random.chance(0.5) ? 0 : 0.1};
   Coupling kept(source, target, options);
   int n_since_change = 0;
   for (int k = 0; k < 8; ++k) {
@@ -127,9 +125,8 @@ Task search_again(std::uint64_t seed, Searches& found) {
     co_await fresh.search();
     co_await kept.apply<&MovedPatch::give, &MovedPatch::take_kept>();
     co_await fresh.apply<&MovedPatch::give, &MovedPatch::take_fresh>();
-    Future<std::uint64_t> different;
-    target.broadcast<&MovedPatch::compare>(std::pair(kept.id(), fresh.id()), different.callback());
-    found.n_different += co_await different;
+    found.n_different +=
+        co_await target.reduce<&MovedPatch::compare>(std::pair(kept.id(), fresh.id()));
     ++found.n_searches;
     found.n_kept += summary.tally.n_kept_sources;
     if (n_since_change >= 3) found.n_kept_wanted += static_cast<std::uint64_t>(n_parts);
@@ -182,7 +179,7 @@ TEST_CASE("a search that keeps what it made of its source finds what a new one f
   test::for_seeds(1, 61, [&](std::uint64_t seed) {
     Searches found;
     const test::Machine machine{.pes = 1 + static_cast<int>(seed % 4), .seed = seed};
-    machine.run([&]() -> Task { return search_again(seed, found); }).require_success();
+    machine.run([&] { return search_again(seed, found); }).require_success();
     REQUIRE(found.n_searches == 8);
     REQUIRE(found.n_different == 0);
     REQUIRE(found.n_kept >= found.n_kept_wanted);
@@ -190,7 +187,6 @@ TEST_CASE("a search that keeps what it made of its source finds what a new one f
   });
   REQUIRE(n_kept > 100);
   Searches found;
-  Setup threads{make_threads_machine(2), {}};
-  REQUIRE(run(threads, [&]() -> Task { return search_again(5, found); }) == 0);
+  REQUIRE(tests::run_threads(2, [&] { return search_again(5, found); }).exit_code == 0);
   REQUIRE(found.n_different == 0);
 }

@@ -12,9 +12,7 @@
 #include <random>
 
 using namespace tess::m2m;
-using tess::test::overlapping_pairs;
-using tess::test::TetPair;
-using tess::test::view;
+using tess::test::overlapping_pairs, tess::test::TetPair, tess::test::view;
 
 namespace {
 
@@ -98,8 +96,7 @@ TEST_CASE("every permutation of the corners and either order of the pair give th
   RandomTets random(3);
   for (int i = 0; i < 50; ++i) {
     const Corners a = random.next(), b = random.next();
-    const double want = overlap_volume(a, b);
-    const double scale = std::min(volume_of(a), volume_of(b));
+    const double want = overlap_volume(a, b), scale = std::min(volume_of(a), volume_of(b));
     CHECK(std::abs(overlap_volume(b, a) - want) <= 1e-14 * scale);
     std::array<std::size_t, 4> order{0, 1, 2, 3};
     do {
@@ -166,8 +163,7 @@ TEST_CASE("moments integrate products of linear functions exactly", "[m2m][super
   RandomTets random(9);
   const double far = 0.5854101966249685, near = 0.1381966011250105;
   for (int i = 0; i < 100; ++i) {
-    const Corners large = moved(unit, 8, {-1.5, -1.5, -1.5});
-    const Corners small = random.next();
+    const Corners large = moved(unit, 8, {-1.5, -1.5, -1.5}), small = random.next();
     if (volume_of(small) < 1e-3) continue;  // the points of the rule are rounded
     for (const bool swap : {false, true}) {
       const Corners &source = swap ? small : large, &target = swap ? large : small;
@@ -183,15 +179,13 @@ TEST_CASE("moments integrate products of linear functions exactly", "[m2m][super
         const auto s = locate(p, source), t = locate(p, target);
         REQUIRE(s);
         REQUIRE(t);
-        for (std::size_t a = 0; a < 4; ++a) {
+        for (std::size_t a = 0; a < 4; ++a)
           for (std::size_t b = 0; b < 4; ++b)
             mixed[a][b] += volume / 4 * s->weights[a] * t->weights[b];
-        }
       }
-      for (std::size_t a = 0; a < 4; ++a) {
+      for (std::size_t a = 0; a < 4; ++a)
         for (std::size_t b = 0; b < 4; ++b)
           CHECK(std::abs(moments.mixed[a][b] - mixed[a][b]) < 1e-13 * volume);
-      }
     }
   }
 }
