@@ -149,7 +149,7 @@ std::string csv_text(std::span<const Heading> headings, const Json& cells) {
   const auto append = [&](const auto& text_of) {
     const char* separator = "";
     for (std::size_t i = 0; i < headings.size(); ++i)
-      if (is_written(headings[i])) out += std::exchange(separator, ",") + text_of(i);
+      if (is_written(headings[i])) out.append(std::exchange(separator, ",")).append(text_of(i));
     out += '\n';
   };
   append([&](std::size_t i) { return std::string(headings[i].name); });
