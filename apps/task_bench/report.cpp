@@ -41,7 +41,8 @@ const Row& first(R result) {
 template <double Metg::*seconds>
 Json shown(R result) {
   if (!result.metg) return "none";
-  return (result.metg->below ? "<" : "") + microseconds((*result.metg).*seconds);
+  std::string text = result.metg->below ? "<" : "";
+  return text.append(microseconds((*result.metg).*seconds));
 }
 template <double Metg::*seconds>
 Json us(R result) {
