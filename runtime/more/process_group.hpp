@@ -33,6 +33,7 @@
 
 #include "runtime/group.hpp"
 
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <shared_mutex>
@@ -88,9 +89,11 @@ class ProcessPart : public Group<ProcessPart<G>> {
   /// Calls entry method F of the object; returns what that returns.
   template <auto F>
   typename EntryTraits<F>::Result run(typename EntryTraits<F>::Arguments arguments) {
+    // By std::invoke(): g++ 12 warns of (object.*F) where F is of a base class and gives a value.
     const auto call = [&arguments](auto& object) {
       return std::apply(
-          [&object](auto&... argument) { return (object.*F)(std::move(argument)...); }, arguments);
+          [&object](auto&... argument) { return std::invoke(F, object, std::move(argument)...); },
+          arguments);
     };
     return run_as(call, F);
   }
