@@ -27,8 +27,9 @@ class WholeHandle {
   [[nodiscard]] CollectionId id() const { return id_; }
 
   /// Ends the collection: on every PE its elements are destroyed and its memory is freed. The
-  /// current epoch waits until all PEs have freed it; `co_await handle.destroy()` waits for that
-  /// alone. Ending a collection again has no effect.
+  /// current epoch waits until all PEs have freed it, and so until waiting coroutines of its
+  /// elements are done; `co_await handle.destroy()` waits for that alone. A coroutine of one of its
+  /// own elements would wait for itself. Ending it again waits likewise, and has no other effect.
   auto destroy() const {
     return Deed([id = id_] { end_collection(id); });
   }

@@ -66,7 +66,9 @@ class ElementProxy : public Sends<ElementProxy<C, IndexType>> {
     construct(current_pe().id(), detail::Demand::insert_if_absent, 0, std::forward<Args>(args)...);
   }
 
-  /// Destroys the element; `co_await element.destroy()` waits until it is gone.
+  /// Destroys the element once none of its code runs or waits. `co_await element.destroy()` waits
+  /// until it is gone; if a coroutine of it waits, only until the element knows that it is to end,
+  /// since that coroutine may await the same epoch.
   auto destroy() const {
     static_assert(check_no_member());
     return detail::Deed([to = *this] { to.template system<detail::Destruction<C>>(); });
@@ -103,7 +105,7 @@ class ElementProxy : public Sends<ElementProxy<C, IndexType>> {
  private:
   void check_not_empty() const {
     TESS_CHECK(collection_ != CollectionId{}, "a message to an empty ElementProxy<",
-               name_of_type<C>, ">: assign array[index] to it first");
+               name_of_type<C>, ">: assign array[index], or what create() gives, to it first");
   }
   static consteval bool check_no_member() {
     static_assert(!detail::OnePerPe<C>,
@@ -113,6 +115,9 @@ class ElementProxy : public Sends<ElementProxy<C, IndexType>> {
 
   friend detail::ProxyAccess;
 
+  void check_receiver() const {
+    if constexpr (detail::OnePerPe<C>) detail::check_exists(current_pe(), PeId{index_.x});
+  }
   template <auto F, class Of, class... Args>
   void post(detail::How<Of> how, Args&&... args) const {
     static_assert(detail::check_entry<C, F, Args...>());
@@ -184,7 +189,7 @@ class ElementProxy : public Sends<ElementProxy<C, IndexType>> {
     return true;
   }
   void post_message(Pe& pe, detail::ElementMessage<Index>* message) const {
-    if constexpr (detail::OnePerPe<C>) detail::check_exists(pe, PeId{index_.x});
+    check_receiver();
     detail::Counted::departs(pe.completion(), message->epoch);
     if (detail::Collection* collection = detail::find_collection(pe, collection_);
         collection != nullptr) [[likely]] {

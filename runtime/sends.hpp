@@ -56,6 +56,7 @@ struct How {
 ///   post<F>(how, args…), ask_as<F>(how, args…) of a proxy that Sends
 ///   broadcast_as<F>(of, args…)                 of one that Broadcasts
 ///   check_on_demand()                          consteval; refuses Demand where it has no meaning
+///   check_receiver()                           if there may be no such receiver
 ///   fields()                                   a tuple of what serialize() writes
 ///   in_words()                                 for reports
 struct ProxyAccess {
@@ -74,6 +75,11 @@ struct ProxyAccess {
   template <auto F, class To, class... Value>
   static void give(const To& to, Value&&... value) {
     to.template give<F>(std::forward<Value>(value)...);
+  }
+  /// Ends the job if there is no such receiver, before anything is sent or a timer is set.
+  template <class To>
+  static void check_receiver(const To& to) {
+    if constexpr (requires { to.check_receiver(); }) to.check_receiver();
   }
   template <class To>
   static consteval bool check_on_demand() {
@@ -147,6 +153,7 @@ class Sends {
   Timer send_after(std::chrono::nanoseconds delay, Args&&... args) const {
     static_assert(detail::check_entry<typename Self::Receiver, F, Args...>());
     using Arguments = typename detail::EntryTraits<F>::Arguments;
+    detail::ProxyAccess::check_receiver(self());
     return after(delay, [to = self(), arguments = detail::as_parameters<Arguments>(
                                           std::forward<Args>(args)...)] {
       std::apply([&to](const auto&... argument) { to.template send<F>(argument...); }, arguments);
@@ -282,6 +289,7 @@ class With : public To::template Verbs<With<To, Of>> {
     return {to_, {how_.of, demand}};
   }
   [[nodiscard]] detail::How<Of> how() const { return how_; }
+  void check_receiver() const { detail::ProxyAccess::check_receiver(to_); }
   template <auto F, class... Args>
   void post(detail::How<Of> how, Args&&... args) const {
     detail::ProxyAccess::post<F>(to_, how, std::forward<Args>(args)...);

@@ -41,9 +41,11 @@ struct CollectionAction {
   /// The collection has ended. A payload may have more to do then; it returns the number of user
   /// messages that are lost.
   static std::uint64_t drop(Pe& pe, Envelope& envelope) {
-    const Counted counted(pe.completion(), Of::counts ? envelope.epoch : EpochId{});
+    Counted counted(pe.completion(), Of::counts ? envelope.epoch : EpochId{});
     const Payload& payload = static_cast<Held&>(envelope).payload.payload;
-    if constexpr (requires { payload.drop(pe); }) {
+    if constexpr (requires { payload.drop(pe, std::move(counted)); }) {
+      return payload.drop(pe, std::move(counted));
+    } else if constexpr (requires { payload.drop(pe); }) {
       return payload.drop(pe);
     } else {
       return 0;

@@ -9,6 +9,11 @@ namespace {
 
 struct End {
   CollectionId id{};
+  /// It has ended by another call: this one waits for the same coroutines.
+  std::uint64_t drop(Pe& pe, Counted&& counted) const {
+    pe.await_ending(id, std::move(counted));
+    return 0;
+  }
 };
 struct Knock {
   CollectionId id{};

@@ -246,6 +246,7 @@ class ProcessProxy : public Sends<ProcessProxy<G>> {
  private:
   friend detail::ProxyAccess;
 
+  void check_receiver() const { (void)member(); }
   /// The part on this PE, or on the first of another process.
   [[nodiscard]] MemberProxy<Part> member() const {
     Pe& pe = current_pe();

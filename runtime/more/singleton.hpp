@@ -14,6 +14,7 @@
 #include "runtime/arrays/home_of_one.hpp"
 
 #include <memory>
+#include <optional>
 #include <utility>
 
 namespace tess {
@@ -89,7 +90,7 @@ ChareProxy<C> create_for_one(PeId given) {
 /// Where the element of create() is: on that PE, or on one that the runtime chooses; many such
 /// chares are spread over all PEs.
 struct One {
-  PeId pe{-1};
+  std::optional<PeId> pe{};
 };
 inline constexpr One one{};
 [[nodiscard]] constexpr One one_on(PeId pe) {
@@ -99,10 +100,10 @@ inline constexpr One one{};
 /// Creates one chare, constructed with these arguments. Returns immediately: messages wait for it.
 template <class C, class... Args>
 ChareProxy<C> create(One where, Args&&... args) {
-  if (where.pe != one.pe) detail::check_exists(current_pe(), where.pe);
-  const auto chare = detail::create_for_one<C>(where.pe);
+  if (where.pe) detail::check_exists(current_pe(), *where.pe);
+  const auto chare = detail::create_for_one<C>(where.pe.value_or(PeId{-1}));
   chare.element().insert_on(
-      where.pe != one.pe ? where.pe : detail::root_of(chare.id(), current_pe().n_pes()),
+      where.pe ? *where.pe : detail::root_of(chare.id(), current_pe().n_pes()),
       std::forward<Args>(args)...);
   return chare;
 }

@@ -465,12 +465,21 @@ std::unique_ptr<HostedCollection> Pe::take_out(CollectionId id) {
 }
 
 void Pe::keep_ending(std::unique_ptr<HostedCollection> collection, Counted end) {
-  ending_.push_back({std::move(collection), std::move(end)});
+  ending_.push_back({{}, std::move(collection)});
+  ending_.back().ends.push_back(std::move(end));
+}
+
+std::vector<Pe::Ending>::iterator Pe::find_ending(CollectionId id) {
+  return std::find_if(ending_.begin(), ending_.end(),
+                      [id](const Ending& one) { return one.collection->id() == id; });
+}
+
+void Pe::await_ending(CollectionId id, Counted&& end) {
+  if (const auto at = find_ending(id); at != ending_.end()) at->ends.push_back(std::move(end));
 }
 
 Pe::Ending Pe::take_ending(CollectionId id) {
-  const auto at = std::find_if(ending_.begin(), ending_.end(),
-                               [id](const Ending& one) { return one.collection->id() == id; });
+  const auto at = find_ending(id);
   Ending taken = std::move(*at);
   ending_.erase(at);
   return taken;

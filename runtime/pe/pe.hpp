@@ -193,9 +193,11 @@ class Pe {
   [[nodiscard]] std::unique_ptr<HostedCollection> take_out(CollectionId id);
   /// Keeps a removed collection until the coroutines of its elements are done.
   void keep_ending(std::unique_ptr<HostedCollection> collection, Counted end);
+  /// If it is kept, what counts waits for it, too.
+  void await_ending(CollectionId id, Counted&& end);
   struct Ending {
+    std::vector<Counted> ends;  ///< the epochs of the ends wait for it
     std::unique_ptr<HostedCollection> collection;
-    Counted end;  ///< the epoch of the end waits for it
   };
   [[nodiscard]] Ending take_ending(CollectionId id);
   [[nodiscard]] CollectionId new_collection_id(LateMessages late = LateMessages::counted);
@@ -412,6 +414,7 @@ class Pe {
   CollectionNumbers collection_numbers_;
   const std::unique_ptr<CollectionTable> collection_table_;
   EndedCollections ended_;
+  [[nodiscard]] std::vector<Ending>::iterator find_ending(CollectionId id);
   std::vector<Ending> ending_;
   Timers timers_{*this};
   struct Auditing;

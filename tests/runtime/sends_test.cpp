@@ -5,6 +5,7 @@
 #include "runtime/more/section.hpp"
 #include "runtime/more/singleton.hpp"
 #include "runtime/more/testing.hpp"
+#include "runtime/more/when.hpp"
 #include "runtime/runtime.hpp"
 #include "runtime/wire/machine/threads.hpp"
 #include "tests/support/over_seeds.hpp"
@@ -248,6 +249,33 @@ TEST_CASE("a proxy with a priority is a value: sent, asked, a target", "[runtime
             CHECK(co_await all[{7}].with(tess::create_home).ask<&ProxyUser::place>() == 0);
           }) == 0);
   CHECK(order == std::vector<int>{-2, -1, 1, 2, 3});
+}
+
+namespace {
+
+/// Waits for a while, and counts those that live.
+class Sleeper : public tess::Chare<Sleeper> {
+ public:
+  Sleeper() { ++n_alive; }
+  Sleeper(const Sleeper&) = delete;
+  Sleeper& operator=(const Sleeper&) = delete;
+  ~Sleeper() { --n_alive; }
+  tess::Task nap() { co_await tess::sleep(std::chrono::milliseconds(1 + index().x)); }
+  static inline int n_alive = 0;
+};
+
+}  // namespace
+
+TEST_CASE("each awaited end of an array waits until all PEs have freed it, whichever came first",
+          "[runtime][proxy]") {
+  tests::over_seeds(50, tests::two_processes, []() -> tess::Task {
+    const auto all = co_await tess::create<Sleeper>(tess::range(8));
+    all.broadcast<&Sleeper::nap>();
+    co_await tess::sleep(std::chrono::microseconds(500));
+    all.destroy();
+    co_await all.destroy();
+    CHECK(Sleeper::n_alive == 0);
+  });
 }
 
 TEST_CASE("an awaited creation is known on every PE, an awaited end is over on every PE",
