@@ -6,7 +6,7 @@ cd "$1"
 limits=(
   m2m_transfer 5050
   libraries 6700
-  tests 19900
+  tests 20100
   everything 33300
 )
 # objects NAME: those that the build has.

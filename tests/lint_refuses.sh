@@ -15,7 +15,7 @@ runtime/core :
 runtime/pe : runtime/core
 runtime :
 collide/serial : runtime/core
-m2m/vocabulary m2m/mesh/mesh.cpp :
+m2m/vocabulary m2m/mesh.cpp :
 apps/hello : runtime
 END
   echo '// A number.' >runtime/core/number.hpp
@@ -23,7 +23,7 @@ END
   echo '#include "runtime/chare.hpp"' >apps/hello/main.cpp
   echo '#include "runtime/core/number.hpp"  // Elements, nowhere a person: whose, "whole".' >collide/serial/grid.cpp
   echo 'Pe& here = current_pe();' >apps/bench/inside.cpp
-  echo 'int nobody = 0;' >m2m/mesh/mesh.cpp  # a name is not prose
+  echo 'int nobody = 0;' >m2m/mesh.cpp  # a name is not prose
   echo 'Says "who" in a quotation.' >m2m/README.md
   echo 'TEST_CASE("a number") {}' >tests/runtime/core/number_test.cpp
   echo 'int shared();' >tests/runtime/core/shared.cpp
@@ -63,7 +63,7 @@ case $check in
     refuses runtime/core/number.hpp '#include "runtime/pe/pe.hpp"' 'runtime/core may not include runtime/pe'
     refuses runtime/pe/queue.hpp '#include "runtime/arrays/typed/array_of.hpp"' 'runtime/pe may not include runtime/arrays'
     refuses runtime/pe/queue.hpp '#include "runtime/chare.hpp"' 'runtime/pe may not include runtime'
-    refuses collide/serial/grid.cpp '#include "m2m/mesh/mesh.cpp"' 'collide/serial may not include m2m/vocabulary'
+    refuses collide/serial/grid.cpp '#include "m2m/mesh.cpp"' 'collide/serial may not include m2m/vocabulary'
     refuses apps/hello/main.cpp '#include "runtime/pe/pe.hpp"' 'apps/hello may not include runtime/pe'
     refuses apps/hello/main.cpp '#include "tests/support/catch.hpp"' 'only tests include tests'
     mkdir runtime/new
@@ -81,7 +81,7 @@ case $check in
     ;;
   internals)
     refuses apps/hello/main.cpp 'const auto here = tess::current_pe().id();' 'apps/hello/main.cpp:1:'
-    refuses m2m/mesh/mesh.cpp 'if (current_pe_or_null() != nullptr) send();' 'm2m/mesh/mesh.cpp:1:'
+    refuses m2m/mesh.cpp 'if (current_pe_or_null() != nullptr) send();' 'm2m/mesh.cpp:1:'
     refuses collide/serial/grid.hpp 'void end(Pe& pe);' 'collide/serial/grid.hpp:1:'
     refuses apps/hello/main.cpp 'tess::detail::Meter* meter = nullptr;' 'runtime/here.hpp'
     ;;

@@ -124,7 +124,7 @@ here section_empty "a broadcast to an empty SectionProxy<.*Block>: assign create
 here section_empty_ends "destroy() of an empty SectionProxy<.*Block>: assign create_section() to it first"
 everywhere section_without_element "waits for a future of int" "1 message (of the runtime, as for a section with it) on PE . to .*Stranger\[6\], which does not exist"
 everywhere section_in_an_epoch "the epoch that create_section() of .*Stranger ran in waits for .*Stranger\[6\], which does not exist: call it outside of the epoch"
-here section_of_another "Voter\[1\] contributes to a section of another array"
+here section_of_another "Stranger\[1\] contributes to a section of another array"
 # What reads other bytes than it wrote, between processes. (With TESS_CHECKS=all it is found where it is sent.)
 for kind in short long; do
   says simulated ${kind}_element "Uneven<[01]> *>\[0\]\|Uneven<[01]>: " "serialize()"

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # The live view in a terminal: terminal.sh STENCIL TESS_MONITOR [MPIEXEC]. It sums up the heat maps of a run on one process
 # and of 2 048 simulated PEs, or with MPIEXEC of two processes.
-source "$(dirname "$0")/../../support/checks.sh"
+source "$(dirname "$0")/../../../support/checks.sh"
 stencil=$1 monitor=$2
 run=
 

@@ -2,7 +2,7 @@
 # What a job says that hangs: by itself with --hang-report, and on SIGUSR1. One report for the whole job.
 #
 #     hang.sh PROGRAM [MPIEXEC]
-source "$(dirname "$0")/../../support/running_job.sh"
+source "$(dirname "$0")/../../../support/running_job.sh"
 pes=2
 n_pes=2
 ((${#mpirun[@]} == 0)) || n_pes=4

@@ -3,7 +3,7 @@
 # 128 + signal; SIGUSR1 prints the census and the run goes on.
 #
 #     signals.sh PROGRAM [MPIEXEC]
-source "$(dirname "$0")/../../support/running_job.sh"
+source "$(dirname "$0")/../../../support/running_job.sh"
 export OMPI_MCA_odls_base_sigkill_timeout=1
 
 pids() { sed -n 's/^PE .* pid //p' "$scratch/out" | sort -u; }
