@@ -88,8 +88,8 @@ case $check in
   test_names)
     refuses tests/runtime/core/registry.cpp 'TEST_CASE("a name") {}' 'should end in _test.cpp'
     refuses tests/runtime/core/shared_test.cpp 'int shared();' 'holds no test case'
-    refuses runtime/more/scan.hpp '// A scan.' 'no tests/runtime/more/scan_test.cpp'
-    refuses tests/headers.txt 'runtime/scan' 'there is no runtime/more/scan.hpp'
+    refuses runtime/scan.hpp '// A scan.' 'no tests/runtime/scan_test.cpp'
+    refuses tests/headers.txt 'runtime/scan' 'there is no runtime/scan.hpp'
     mkdir tests/elsewhere
     refuses tests/elsewhere/number_test.cpp 'TEST_CASE("a number") {}' 'there is no folder elsewhere'
     ;;
