@@ -61,7 +61,8 @@ void BroadcastLog::on_start(NumberedCall&& call, Counted counted) {
 void BroadcastLog::on_call(NumberedCall&& call, Counted counted) {
   for (const PeId child : children_) host_.send(child, call);
   host_.flush();  // other processes do not wait for the local elements
-  tables_->early.emplace(call.number, Tables::Early{std::move(call), std::move(counted)});
+  const std::uint64_t number = call.number;
+  tables_->early.emplace(number, Tables::Early{std::move(call), std::move(counted)});
   while (!tables_->early.empty() && tables_->early.begin()->first == applied_ + 1) {
     Tables::Early& next = tables_->early.begin()->second;
     tables_->copies.push_back(std::move(next.call));

@@ -68,6 +68,7 @@ class RunHold {
   RunHold(RunHold&& other) noexcept : completion_(std::exchange(other.completion_, nullptr)) {}
   RunHold(const RunHold&) = delete;
   RunHold& operator=(const RunHold&) = delete;
+  RunHold& operator=(RunHold&&) = delete;
   ~RunHold() {
     if (completion_ != nullptr) completion_->hop_processed();
   }
