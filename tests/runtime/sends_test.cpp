@@ -254,12 +254,12 @@ TEST_CASE("a proxy with a priority is a value: sent, asked, a target", "[runtime
 namespace {
 
 /// Waits for a while, and counts those that live.
-class Sleeper : public tess::Chare<Sleeper> {
+class NapElement : public tess::Chare<NapElement> {
  public:
-  Sleeper() { ++n_alive; }
-  Sleeper(const Sleeper&) = delete;
-  Sleeper& operator=(const Sleeper&) = delete;
-  ~Sleeper() { --n_alive; }
+  NapElement() { ++n_alive; }
+  NapElement(const NapElement&) = delete;
+  NapElement& operator=(const NapElement&) = delete;
+  ~NapElement() { --n_alive; }
   tess::Task nap() { co_await tess::sleep(std::chrono::milliseconds(1 + index().x)); }
   static inline int n_alive = 0;
 };
@@ -269,12 +269,12 @@ class Sleeper : public tess::Chare<Sleeper> {
 TEST_CASE("each awaited end of an array waits until all PEs have freed it, whichever came first",
           "[runtime][proxy]") {
   tests::over_seeds(50, tests::two_processes, []() -> tess::Task {
-    const auto all = co_await tess::create<Sleeper>(tess::range(8));
-    all.broadcast<&Sleeper::nap>();
+    const auto all = co_await tess::create<NapElement>(tess::range(8));
+    all.broadcast<&NapElement::nap>();
     co_await tess::sleep(std::chrono::microseconds(500));
     all.destroy();
     co_await all.destroy();
-    CHECK(Sleeper::n_alive == 0);
+    CHECK(NapElement::n_alive == 0);
   });
 }
 
