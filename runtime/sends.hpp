@@ -181,7 +181,7 @@ class Sends {
     self().with(create_home).template send<F>(std::forward<Args>(args)...);
   }
 
-  /// The same receiver for messages with a priority, or for messages that create their element.
+  /// Gives the same receiver for messages with a priority, or for messages that create their element.
   [[nodiscard]] With<Self, Priority> with(Priority priority) const { return {self(), {priority}}; }
   [[nodiscard]] With<Self, detail::OfEntry> with(CreateHere /*where*/) const {
     return {self(), {{}, detail::Demand::here}};
@@ -233,7 +233,7 @@ class Broadcasts {
     broadcast<F>(std::forward<Args>(args)..., result.callback());
     return result;
   }
-  /// The same receivers for broadcasts with a priority.
+  /// Gives the same receivers for broadcasts with a priority.
   [[nodiscard]] With<Self, Priority> with(Priority priority) const { return {self(), {priority}}; }
   /// A target for results: entry method F of all.
   template <auto F>

@@ -59,7 +59,7 @@ class Client : public tess::Chare<Client, tess::Index1> {
   /// The answer since the last take() or forget().
   void give_answer(tess::Callback<Answer> target);
   void give_pairs(tess::Callback<std::vector<ScenePair>> target);
-  /// Of the process, from the first of its PEs.
+  /// Gives the memory of the process; only the first of its PEs contributes it.
   void give_memory(tess::Callback<std::uint64_t> target);
   void forget();
 

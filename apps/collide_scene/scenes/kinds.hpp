@@ -33,7 +33,7 @@ namespace collide_scene {
 
 /// Cubes with edges log-uniform over four decades; 9.5 million pairs at a million cubes.
 [[nodiscard]] Scene four_decades(std::uint64_t n, std::uint64_t seed);
-/// The same over six decades.
+/// Makes cubes with edges log-uniform over six decades.
 [[nodiscard]] Scene six_decades(std::uint64_t n, std::uint64_t seed);
 
 /// Triangles a tenth long and a ten-thousandth wide, at 100 000 as the next two: 3.5 million pairs

@@ -62,7 +62,7 @@ struct Pair {
   }
   return parts;
 }
-/// The same of an option that may be given several times.
+/// Splits the lists of an option that may be given several times.
 [[nodiscard]] inline std::vector<std::string> split_names(const std::vector<std::string>& lists) {
   std::vector<std::string> names;
   for (const std::string& list : lists)

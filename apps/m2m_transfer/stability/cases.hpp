@@ -66,7 +66,7 @@ struct Case {
 
 /// A mesh of at least 4 points for a target. Its tetrahedra join points that follow each other.
 [[nodiscard]] TetMesh cloud(std::vector<Point> points);
-/// So many random points, in turn on faces (thirds, halves and random places) and edges.
+/// Draws n random points, in turn on faces (thirds, halves and random places) and edges.
 [[nodiscard]] std::vector<Point> on_faces_and_edges(const TetMesh& mesh, std::size_t n);
 
 /// True if the tetrahedron holds the point in extended precision, with barycentric coordinates of

@@ -129,7 +129,7 @@ class ArrayOf : public Collection {
     Counted::departs(pe_.completion(), message->epoch);
     post_counted(message);
   }
-  /// The same for a message that is counted already.
+  /// Sends a new message that is counted already.
   void post_counted(CallMessage* message) {
     Record* record = table_.find(message->index);
     if (record != nullptr && record->state() == IndexState::here) [[likely]] {
