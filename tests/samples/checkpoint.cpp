@@ -1,4 +1,4 @@
-// The sample of runtime/checkpoint.hpp and runtime/README.md, compiled and run.
+// The sample of runtime/checkpoint.hpp and runtime/guide/checkpoint.md, compiled and run.
 // tests/samples/check.py compares the text.
 #include "runtime/checkpoint.hpp"
 

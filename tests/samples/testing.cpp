@@ -1,5 +1,5 @@
-// The sample of runtime/more/testing.hpp and runtime/README.md, compiled and run. tests/samples/check.py
-// compares the text.
+// The sample of runtime/more/testing.hpp and runtime/guide/find_a_race.md, compiled and run.
+// tests/samples/check.py compares the text.
 #include "runtime/more/testing.hpp"
 
 #include "runtime/runtime.hpp"

@@ -1,4 +1,5 @@
-// A user's strategy without a run, as runtime/README.md shows it. tests/samples/check.py compares.
+// A user's strategy without a run, as runtime/guide/write_a_strategy.md shows it.
+// tests/samples/check.py compares.
 #include "runtime/more/balance_offline.hpp"
 
 #include "tests/support/catch.hpp"

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # The page of a run, drawn by a real browser: page.sh STENCIL CHROMIUM [PICTURE]. Fails unless the page that its script has
 # filled shows the chares, a curve, a picture and a heat map. Without a browser (cmake/setup.sh --with-browser) the test
-# is skipped: exit code 77. With PICTURE, a .png file, it takes the picture of runtime/README.md instead, in half a minute:
+# is skipped: exit code 77. With PICTURE, a .png file, it takes the picture of runtime/guide/see_a_run.md instead, in half a minute:
 #
 #     tests/runtime/watch/monitor/page.sh build/release/bin/stencil "$(command -v chromium)" runtime/watch/monitor/page.png
 set -euo pipefail
