@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# lint_refuses.sh layers|words|internals|test_names ROOT: cmake/CHECK.sh accepts a small tree, and refuses it with each planted fault.
+# lint_refuses.sh layers|words|internals|test_names|pages ROOT: cmake/CHECK.sh (pages.py) accepts a small tree, and refuses it with each planted fault.
 set -euo pipefail
 check=$1 root=$2
 
@@ -35,6 +35,7 @@ run_check() {
     words) bash "$root/cmake/words.sh" "$tree"/*/*/*.[hc]pp "$tree"/m2m/* ;;
     internals) bash "$root/cmake/internals.sh" "$tree" ;;
     test_names) bash "$root/cmake/test_names.sh" "$tree" ;;
+    pages) python3 "$root/cmake/pages.py" "$tree" ;;
   esac
 }
 
@@ -92,6 +93,11 @@ case $check in
     refuses tests/headers.txt 'runtime/scan' 'there is no runtime/scan.hpp'
     mkdir tests/elsewhere
     refuses tests/elsewhere/number_test.cpp 'TEST_CASE("a number") {}' 'there is no folder elsewhere'
+    ;;
+  pages)
+    refuses m2m/README.md '[a page](../runtime/gone.md)' 'there is no ../runtime/gone.md'
+    refuses m2m/README.md '[a heading](#gone)' 'README.md has no heading #gone'
+    refuses m2m/README.md "|$(printf ' long%.0s' {1..40}) |" 'a row of 203 characters'
     ;;
   *)
     echo "unknown check $check"
