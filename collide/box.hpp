@@ -39,7 +39,7 @@ template <class Real, std::size_t D>
   return box;
 }
 
-/// The same box, in double.
+/// Gives the same box in double.
 template <class Real>
 [[nodiscard]] Aabb in_double(const Box<Real, 3>& box) noexcept {
   Aabb out;
@@ -86,8 +86,8 @@ inline void grow(Aabb& box, const Point& p) noexcept {
   return out;
 }
 
-/// The smallest box that contains all corners of a shape. Not valid (is_valid()) if a coordinate is
-/// NaN or infinite, wherever it stands.
+/// The smallest box that contains all corners of a shape. It is not valid (is_valid()) if a
+/// coordinate is NaN or infinite, wherever it stands.
 template <class Real, std::size_t D, std::size_t N>
 [[nodiscard]] Box<Real, D> box_around(const std::array<std::array<Real, D>, N>& corners) noexcept {
   Box<Real, D> out = box_of(corners[0]);

@@ -63,13 +63,13 @@ struct Collider {
   /// leaves out.
   std::size_t submit(const Objects& objects) const;
   std::size_t submit(const std::vector<Item>& items, std::span<const Capsule> capsules = {}) const;
-  /// The same within the epoch that creates the collider. If it is not known on this PE yet, the
+  /// Submits within the epoch that creates the collider. If it is not known on this PE yet, the
   /// objects are a message that waits for it; then a box that is not valid ends the job.
   void submit_early(Submission objects) const;
 
   /// Collides all objects that were submitted. When the task is done, the owners have handled all
-  /// hits. Calls `taken`, unless it is empty, when clients may submit for the next collision. Throws
-  /// Error: bad_argument if `to` has no call; out_of_range if a coordinate exceeds the range
+  /// hits. Calls `taken`, unless it is empty, when clients may submit for the next collision.
+  /// Throws Error: bad_argument if `to` has no call; out_of_range if a coordinate exceeds the range
   /// of cells, and then the objects are dropped.
   Task run(HitReceivers to, Callback<void> taken = {}) const;
   /// What the last collision did, on all PEs. No collision may be running.

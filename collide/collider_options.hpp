@@ -9,8 +9,8 @@
 
 namespace tess::collide {
 
-/// On a simulated machine with a fixed cost per message an item of a part of a search takes so many
-/// nanoseconds. Pieces of long thin objects and kept pairs cost nothing.
+/// An item of a part of a search takes so many nanoseconds on a simulated machine with a fixed cost
+/// per message. Pieces of long thin objects and kept pairs cost nothing.
 struct SimulatedCosts {
   double gridding = 0;  ///< per object in a voxel: the voxel is found, and the object sorted there
   double search = 0;    ///< per object in a voxel that is searched
@@ -23,12 +23,12 @@ struct SimulatedCosts {
 /// The voxels, and the pairs that are hits.
 struct ColliderOptions {
   Point origin{0, 0, 0};  ///< a lower corner of a voxel, if their size is given
-  /// The edges of the smallest voxels. Zero: chosen in each collision by expected cost, with an
-  /// origin.
+  /// The edges of the smallest voxels. Zero means that each collision chooses them, and an origin,
+  /// by expected cost.
   Point voxel_size{0, 0, 0};
   PairRules rules{};
-  /// Of objects with capsules. Infinite: they are whole. Zero: chosen in each collision by expected
-  /// cost, with the size of the voxels; whole if that is given.
+  /// Bounds the pieces of objects with capsules. Infinite means that they are whole. Zero means
+  /// that it is chosen with the size of the voxels; if that is given, objects are whole.
   double piece_length = 0;
   /// A length, for objects that move little from a collision to the next. If positive, a collision
   /// also finds pairs of boxes that are larger by it on each side, and keeps them. While the same
@@ -42,7 +42,7 @@ struct ColliderOptions {
 /// What the last collision did, on all PEs.
 struct CollisionStatistics {
   GridCounts grid;  ///< entries that are left out are not sent
-  /// Of long thin objects; one per object if they are whole; 0: objects are boxes, without capsules.
+  /// Counts pieces of long thin objects: one per whole object; 0 if objects have no capsules.
   std::uint64_t n_pieces = 0;
   std::uint64_t n_kept = 0;  ///< pairs of larger boxes that were tested (ColliderOptions::slack)
   bool searched = true;      ///< if not, these pairs are of a collision before, and all else is 0

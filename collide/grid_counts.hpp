@@ -16,11 +16,11 @@ struct GridCounts {
                                 ///< the least and the greatest size of each octave allow
   std::uint64_t n_voxels = 0;   ///< that were searched
   std::uint64_t n_entries = 0;  ///< objects in voxels: an object counts in each that it touches
-  /// Of the entries, those in voxels that can have no pair: with one object, with none of the grid's
-  /// own sizes, or with objects of one model (or of one of two sets) if pairs within it do not count.
+  /// Counts the entries in voxels that can have no pair: with one object, with none of the grid's
+  /// own sizes, or with objects of one model (or of one of two sets) if pairs in it do not count.
   std::uint64_t n_left_out = 0;
 
-  /// Of two parts of a search.
+  /// Adds the counts of two parts of a search.
   friend GridCounts operator+(const GridCounts& a, const GridCounts& b) {
     return {std::max(a.voxel_size, b.voxel_size), std::max(a.n_levels, b.n_levels),
             a.n_voxels + b.n_voxels, a.n_entries + b.n_entries, a.n_left_out + b.n_left_out};

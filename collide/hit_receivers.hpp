@@ -27,8 +27,8 @@ struct Hits {
   std::vector<LocalPair> pairs;
 };
 
-/// How many owners of a pair receive it. An owner of both objects receives it once, and `mine` is
-/// either of them.
+/// Says how many owners of a pair receive it. An owner of both objects receives it once, and `mine`
+/// is either of them.
 enum class Receivers {
   both_owners,
   /// One of the two. If an object of the pair was submitted on the PE that finds the pair, it is

@@ -17,7 +17,7 @@ struct Objects {
   ModelId model{};
   std::span<const Aabb> boxes;
   LocalId first{};
-  /// Of long thin objects, one per box, or none. Pairs whose capsules are certainly apart are no
+  /// Bound long thin objects: one per box, or none. Pairs whose capsules are certainly apart are no
   /// hits.
   std::span<const Capsule> capsules{};
 };

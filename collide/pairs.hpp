@@ -99,7 +99,7 @@ struct Capsules {
 /// Whether most of n objects are much longer than thick, as far as a few of them show.
 [[nodiscard]] bool seem_thin(const Capsules& capsules, std::size_t n);
 
-/// The same for objects that have capsules. A pair of long thin objects is passed on only if their
+/// Searches objects that have capsules. A pair of long thin objects is passed on only if their
 /// capsules may have a common point, and never twice.
 template <class Real>
 void search_pairs(std::span<const Box<Real, 3>> boxes, const Capsules& capsules,
@@ -225,7 +225,7 @@ template <class Object, class Found, class Wanted = EveryPair>
 void for_each_pair(std::span<const Object> objects, const PairOptions& options, Found&& found,
                    const Wanted& wanted = {}) {
   const auto boxes = detail::boxes_of(objects);
-  // Without a branch, which would be mispredicted for every second pair.
+  // It has no branch, which would be mispredicted for every second pair.
   auto ordered = [&](std::uint32_t i, std::uint32_t j) { found(std::min(i, j), std::max(i, j)); };
   const auto test = [&](std::uint32_t i, std::uint32_t j) {
     return wanted(std::min(i, j), std::max(i, j)) &&

@@ -29,12 +29,12 @@ class ClosedModel {
   /// corners, and Error (bad_value) for a triangle that is not finite.
   explicit ClosedModel(std::span<const Triangle> triangles);
 
-  /// How often the surface winds around `p`: 1 inside if its normals point outward, 0 outside. On
-  /// the surface it is that of one of its sides.
+  /// Says how often the surface winds around `p`: 1 inside if its normals point outward, 0 outside.
+  /// On the surface it is that of one of its sides.
   [[nodiscard]] int winding_number(const Point& p) const;
 
-  /// Nothing if `p` is outside or on the surface. Costs one ray, and one nearest triangle if `p` is
-  /// inside. Lengths have a relative error below 2^-42.
+  /// Gives nothing if `p` is outside or on the surface. It costs one ray, and one nearest triangle
+  /// if `p` is inside. Lengths have a relative error below 2^-42.
   [[nodiscard]] std::optional<Penetration> penetration(const Point& p) const;
 
  private:

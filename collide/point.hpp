@@ -19,7 +19,7 @@ using Point = std::array<double, 3>;
 [[nodiscard]] constexpr Point cross(const Point& a, const Point& b) noexcept {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
-/// Not scaled: squares of coordinates must be in the range of double.
+/// It does not scale: squares of coordinates must be in the range of double.
 [[nodiscard]] inline double length(const Point& a) noexcept {
   return std::sqrt(dot(a, a));
 }

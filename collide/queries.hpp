@@ -206,8 +206,8 @@ std::vector<Neighbour> Index<Object>::nearest(const Point& p, std::size_t k) con
   tree_.descend_near([&](const Aabb& box) { return distance2(box, p); }, limit,
                      [&](const auto& leaf) {
                        tree_.each_place(leaf, [&](std::uint32_t i) {
-                         // Not less than the distance of its box, whatever is rounded. So the order
-                         // in which the tree is visited has no influence.
+                         // It is not less than the distance of its box, whatever is rounded. So the
+                         // order in which the tree is visited has no influence.
                          const double to_box = distance2(detail::aabb_of(objects_[i]), p);
                          if (to_box > limit) return;
                          const double to_object = distance2(objects_[i], p);

@@ -27,7 +27,7 @@ struct Segment {
 /// count, never: two segments come apart by a small translation.
 [[nodiscard]] bool intersect(const Segment& a, const Segment& b, Touching touching) noexcept;
 
-/// With a box, which is solid: exact as well.
+/// Tests against a box, which is solid, are exact as well.
 [[nodiscard]] bool intersect(const Segment& a, const Aabb& b, Touching touching) noexcept;
 [[nodiscard]] inline bool intersect(const Aabb& a, const Segment& b, Touching touching) noexcept {
   return intersect(b, a, touching);

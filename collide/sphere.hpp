@@ -19,7 +19,8 @@ struct Sphere {
 };
 
 /// The smallest box of doubles that contains the ball: rounded outward by at most one unit in the
-/// last place. Not valid (is_valid()) if the radius is negative or NaN, or if a face overflows.
+/// last place. It is not valid (is_valid()) if the radius is negative or NaN, or if a face
+/// overflows.
 [[nodiscard]] Aabb box_of(const Sphere& sphere) noexcept;
 
 [[nodiscard]] bool intersect(const Sphere& a, const Sphere& b, Touching touching) noexcept;

@@ -51,7 +51,7 @@ struct Tetrahedron {
   return intersect(b, a, touching);
 }
 
-/// With a box, which is solid: exact as well.
+/// Tests against a box, which is solid, are exact as well.
 [[nodiscard]] bool intersect(const Tetrahedron& a, const Aabb& b, Touching touching) noexcept;
 [[nodiscard]] inline bool intersect(const Aabb& a, const Tetrahedron& b,
                                     Touching touching) noexcept {

@@ -48,7 +48,7 @@ template <class Real>
   return intersect(b, a, touching);
 }
 
-/// With a box, which is solid: exact as well.
+/// Tests against a box, which is solid, are exact as well.
 [[nodiscard]] bool intersect(const Triangle& a, const Aabb& b, Touching touching) noexcept;
 [[nodiscard]] inline bool intersect(const Aabb& a, const Triangle& b, Touching touching) noexcept {
   return intersect(b, a, touching);
@@ -70,8 +70,8 @@ template <class Real>
 }
 
 /// The segment that two triangles in different planes have in common; both ends are equal if they
-/// touch in one point. Nothing if the triangles do not intersect, lie in one plane, or if one is
-/// degenerate. Exact signs decide between which edges it lies; each coordinate is then within
+/// touch in one point. There is none if the triangles do not intersect, lie in one plane, or if one
+/// is degenerate. Exact signs decide between which edges it lies; each coordinate is then within
 /// 2^-42 of the largest coordinate of the two triangles, however small the angle between them.
 [[nodiscard]] std::optional<Segment> contact_segment(const Triangle& a, const Triangle& b) noexcept;
 

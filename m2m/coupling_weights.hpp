@@ -33,7 +33,7 @@ void require_weights(TransferKind kind, bool clamp);
 TaskOf<WeightMatrix> collect_weights(const AnyCoupling& coupling, std::int64_t n_sources,
                                      std::int64_t n_targets);
 
-/// The same for a transfer between meshes that the library holds.
+/// Does the same for a transfer between meshes that the library holds.
 inline TaskOf<WeightMatrix> collect_weights(const Transfer& transfer, std::int64_t n_sources,
                                             std::int64_t n_targets) {
   return collect_weights(transfer.coupling(), n_sources, n_targets);

@@ -36,7 +36,7 @@ class FieldFile {
   FieldFile& operator=(FieldFile&&) noexcept;
 
   [[nodiscard]] const std::vector<FileField>& fields() const noexcept;
-  /// Per step; ascending in sound files.
+  /// The time of each step; they ascend in sound files.
   [[nodiscard]] const std::vector<double>& times() const noexcept;
   [[nodiscard]] std::size_t n_steps() const noexcept { return times().size(); }
 
@@ -45,7 +45,7 @@ class FieldFile {
   /// value for some vertex.
   [[nodiscard]] Field vertex_field(const TetMesh& mesh, std::string_view name,
                                    std::size_t step) const;
-  /// The same in tetrahedra. The parts of an element that was split have its value.
+  /// Gives the values in tetrahedra likewise. The parts of a split element have its value.
   [[nodiscard]] Field tet_field(const TetMesh& mesh, std::string_view name, std::size_t step) const;
 
  private:

@@ -15,7 +15,7 @@
 
 namespace tess::m2m {
 
-/// Of one component. m: a quarter of the volume of the tetrahedra at a vertex.
+/// The norms of one component. m is a quarter of the volume of the tetrahedra at a vertex.
 struct FieldNorms {
   ErrorNorms all;              ///< over all vertices
   ErrorNorms found;            ///< over those that are not outside

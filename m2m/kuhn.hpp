@@ -23,7 +23,7 @@ struct KuhnBox {
 /// the same on every machine.
 [[nodiscard]] TetMesh kuhn_mesh(KuhnBox box);
 
-/// The same mesh in ranges of ids, for PEs that hold a part of it.
+/// Gives the same mesh in ranges of ids, for PEs that hold a part of it.
 [[nodiscard]] GlobalId n_points(KuhnBox box);
 [[nodiscard]] GlobalId n_tets(KuhnBox box);
 void kuhn_points(KuhnBox box, GlobalId first, std::span<Point> points);

@@ -80,8 +80,8 @@ struct TetMesh {
   std::vector<NodeSet> node_sets{};
   std::vector<Skipped> skipped{};
   std::vector<SplitElements> split{};  ///< per type; empty if all elements are tetrahedra
-  /// Per tetrahedron: its element among all elements with a volume, in the order of the file. Empty
-  /// if all elements are tetrahedra.
+  /// Gives each tetrahedron its element among all with a volume, in the order of the file. It is
+  /// empty if all elements are tetrahedra.
   std::vector<GlobalId> element_of_tet{};
 
   [[nodiscard]] std::size_t n_points() const noexcept { return points.size(); }
@@ -122,8 +122,8 @@ MeshCensus validate(const TetMesh& mesh);
 /// onto itself does not tell them apart.
 [[nodiscard]] std::string coincident_text(const TetMesh& mesh);
 
-/// "162 of 324 tetrahedra have the corners of another"; empty if there are none. Integrals count them
-/// as often as they are there.
+/// "162 of 324 tetrahedra have the corners of another"; empty if there are none. Integrals count
+/// them as often as they are there.
 [[nodiscard]] std::string repeated_text(const TetMesh& mesh);
 
 /// The box around all points.

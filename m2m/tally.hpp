@@ -13,8 +13,8 @@ struct Tally {
   std::uint64_t n_candidates = 0;         ///< pairs (tetrahedron, point in its box) tested
   /// Source pieces that had not moved since the last search and kept what it had made of them.
   std::uint64_t n_kept_sources = 0;
-  /// Of conservative kinds: target points or cells that the source covers more than once, since its
-  /// tetrahedra overlap there. Their values are not the projection of one field.
+  /// Counts, for conservative kinds, points or cells that the source covers more than once, since
+  /// its tetrahedra overlap there. Their values are not the projection of one field.
   std::uint64_t n_overcovered = 0;
   double most_covered = 0;  ///< the greatest coverage among these, such as 1.25 times
 

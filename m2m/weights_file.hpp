@@ -48,7 +48,7 @@ void write_weights(const std::string& path, const WeightMatrix& matrix);
 /// a vertex out of range or is not finite. Rows take 8 bytes of memory each, also those without
 /// weights: more than 2^24 rows, and than 1 000 per byte of the file, are damage.
 [[nodiscard]] WeightMatrix read_weights(const std::string& path);
-/// The same with check_fits(), before anything is allocated; there may be any number of rows.
+/// Reads any number of rows, and calls check_fits() before anything is allocated.
 [[nodiscard]] WeightMatrix read_weights(const std::string& path, const TetMesh& source,
                                         const TetMesh& target);
 

@@ -20,7 +20,7 @@ struct WorstPlace {
   friend bool operator==(const WorstPlace&, const WorstPlace&) = default;
 };
 
-/// At most n_most places, the farthest first; of equally far ones the lowest point first. So a list
+/// Holds at most n_most places, the farthest first, of equal ones the lowest point first. So a list
 /// joined from parts does not depend on the parts.
 class WorstPlaces {
  public:

@@ -26,7 +26,7 @@ class ExodusSteps {
   /// Writes the mesh with its blocks, side sets and node sets. `mesh` must outlive the object.
   /// Throws Error (bad_file, environment) with the path if the file cannot be written.
   ExodusSteps(const std::string& path, const TetMesh& mesh);
-  /// Without finish() no file remains.
+  /// If finish() was not called, no file remains.
   ~ExodusSteps();
   ExodusSteps(const ExodusSteps&) = delete;
   ExodusSteps& operator=(const ExodusSteps&) = delete;

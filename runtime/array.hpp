@@ -68,7 +68,7 @@ CollectionId create_collection(const Range& range, Args&&... args) {
   Pe& pe = current_pe();
   auto array = new_array<C>(pe, range, std::forward<Args>(args)...);
   const CollectionId id = array.id;
-  // Here at once, so that the proxy is valid from now on.
+  // It is made here at once, so that the proxy is valid from now on.
   send_to_all<&create_arrives<C, std::decay_t<Args>...>>(pe, std::move(array));
   return id;
 }
@@ -116,7 +116,7 @@ ArrayProxy<C> create(const Range& range, Args&&... args) {
   detail::check_creation<C, Args...>(range);
   return ArrayProxy<C>(detail::create_collection<C>(range, std::forward<Args>(args)...));
 }
-/// The same of tess::sparse: no elements yet. The arguments of constructors are those of insert().
+/// Creates a sparse array, which has no elements yet. insert() has the arguments of constructors.
 template <class C>
 ArrayProxy<C> create(const Sparse& range) {
   detail::check_class<C>();

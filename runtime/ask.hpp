@@ -13,8 +13,8 @@
 // An ask is a message with the number of a place on the asking PE; the reply is a message to that
 // place. The call is sent when ask() is called, so several may be under way at once: see when.hpp.
 // An Ask that is destroyed before its reply is there is cancelled: the function still runs, and its
-// reply is dropped and counted (statistics().late_replies). The call itself is not withdrawn: if the
-// element never comes to exist, the end of the run reports the message that waits for it.
+// reply is dropped and counted (statistics().late_replies). The call itself is not withdrawn: if
+// the element never comes to exist, the end of the run reports the message that waits for it.
 #pragma once
 
 #include "runtime/arrays/typed/call.hpp"
@@ -60,7 +60,7 @@ class AskBase {
 
   void await_suspend(Task::Handle task);
 
-  // For when_all and when_any.
+  // when_all and when_any call these.
   void wait(Waiter& waiter);
   void withdraw() { waiting_ = nullptr; }
   [[nodiscard]] bool failed() const { return failure_.has_value(); }
@@ -71,7 +71,7 @@ class AskBase {
   [[nodiscard]] static AskBase* take(Pe& pe, std::uint64_t id);
 
  protected:
-  /// Not while a coroutine waits for it, and on its own PE only.
+  /// It may move on its own PE only, and not while a coroutine waits for it.
   AskBase(AskBase&& other) noexcept;
 
   void set_deadline(Time limit);
@@ -236,8 +236,8 @@ class [[nodiscard]] Ask final : public detail::AskOf<detail::ReplyValue<F>> {
   Ask(CollectionId collection, const Index& index) : collection_(collection), index_(index) {}
 
   /// If no reply has come after this time from now, the asker gets an Error that names the element,
-  /// the function and the time. A reply that comes later is dropped and counted; but where the PE is
-  /// busy beyond the limit, one that runs before the timer is taken.
+  /// the function and the time. A reply that comes later is dropped and counted; but where the PE
+  /// is busy beyond the limit, one that runs before the timer is taken.
   [[nodiscard]] Ask within(std::chrono::nanoseconds limit) && {
     this->set_deadline(limit);
     return std::move(*this);

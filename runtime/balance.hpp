@@ -42,35 +42,35 @@ namespace tess {
 /// only on the PE that called start_balancing(), and not after the end of the array.
 class BalancerProxy {
  public:
-  /// Of no array, for programs that balance on demand: its rounds return at once and move nothing,
-  /// and its history is empty.
+  /// It refers to no array, for programs that balance on demand: its rounds return at once and move
+  /// nothing, and its history is empty.
   BalancerProxy() = default;
   explicit BalancerProxy(GroupProxy<balance::Balancer> group) : group_(group) {}
 
-  /// The rounds so far, in order. Only on the PE that called start_balancing().
+  /// The rounds so far, in order. May be called only on the PE that called start_balancing().
   [[nodiscard]] const std::vector<balance::Round>& history() const {
     static const std::vector<balance::Round> none;
     return exists() ? group_.local().history() : none;
   }
 
-  /// Begins the first phase; awaited while no element of the array has work. For arrays that ran
-  /// before balancing started, whose loads would be unknown in the first round. Only on the PE that
-  /// called start_balancing().
+  /// Begins the first phase; it is awaited while no element of the array has work. Arrays that ran
+  /// before balancing started need it, since their loads would be unknown in the first round. May
+  /// be called only on the PE that called start_balancing().
   [[nodiscard]] Task begin_phase() const {
     return exists() ? group_.local().begin_phase() : nothing();
   }
 
-  /// After a restart: a round by the loads that the checkpoint has of the elements, so that the
-  /// first phase is balanced as those before the checkpoint were. Awaited after start_balancing()
-  /// while no element of the array has work, in place of begin_phase(). Nothing moves if it has
-  /// none.
+  /// Runs a round after a restart by the loads that the checkpoint has of the elements, so that the
+  /// first phase is balanced as those before the checkpoint were. It is awaited after
+  /// start_balancing(), while no element of the array has work, in place of begin_phase(). Nothing
+  /// moves if the checkpoint has no loads.
   [[nodiscard]] Task place_again() const {
     return exists() ? group_.local().place_again() : nothing();
   }
 
-  /// Runs a round (with `automatic` only if it pays off); awaited between two phases, while no
-  /// element of the array has work. All moved elements have arrived when it returns. Only on the PE
-  /// that called start_balancing(). It cannot be combined with at_sync() or periodic rounds.
+  /// Runs a round (with `automatic` only if it pays off); it is awaited between two phases, while
+  /// no element of the array has work. All moved elements have arrived when it returns. Only
+  /// the PE that called start_balancing() may call it, and not with at_sync() or periodic rounds.
   [[nodiscard]] Task round() const { return exists() ? group_.local().phase_ends() : nothing(); }
 
  private:

@@ -43,8 +43,8 @@ enum class StrategyOf : std::uint8_t { runtime, user };
 /// known yet. With the user's own strategy, options.strategy may be any name.
 void validate(const BalanceOptions& options, std::int32_t n_pes,
               StrategyOf strategy = StrategyOf::runtime);
-/// For a chare without balance_position(): throws Error that names it and the strategy if that one
-/// needs positions.
+/// Throws Error that names the chare and the strategy if the chare has no balance_position(), which
+/// the strategy needs.
 void require_no_positions(const BalanceOptions& options, std::string_view chare);
 }  // namespace balance
 

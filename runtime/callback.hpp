@@ -21,7 +21,7 @@ namespace tess {
 template <class T>
 class Callback {
  public:
-  /// How to call the target: one static object for each pair of target kind and entry method.
+  /// Says how the target is called: one static object per pair of target kind and entry method.
   struct Kind : detail::Registered {
     using Call = void (*)(const Callback&, T&&);
     using Describe = std::string (*)(const Callback&);
@@ -32,7 +32,7 @@ class Callback {
   };
 
   Callback() = default;
-  /// For the proxies; the kind's function reads `where`.
+  /// Proxies call it; the kind's function reads `where`.
   Callback(const Kind& kind, const std::vector<std::byte>& where) : kind_(kind), where_(where) {}
   template <Bitwise... Values>
   Callback(const Kind& kind, std::in_place_t tag, const Values&... where)
@@ -78,7 +78,7 @@ class Callback<void> {
   [[nodiscard]] explicit operator bool() const { return static_cast<bool>(target_); }
   void operator()() const { target_(NoValue{}); }
   [[nodiscard]] std::string name() const { return target_.name(); }
-  /// The same target, for values that say nothing.
+  /// Gives the same target, which takes values that say nothing.
   [[nodiscard]] const Callback<NoValue>& of_no_value() const { return target_; }
 
   friend bool operator==(const Callback&, const Callback&) = default;

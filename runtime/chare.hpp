@@ -80,7 +80,7 @@ class Chare : public detail::TessContributor<IndexType> {
   }
 
   /// The number of the reduction that this element's next contribution belongs to. After this call
-  /// a new element keeps this number. Not for use in a constructor.
+  /// a new element keeps this number. A constructor must not call it.
   [[nodiscard]] std::uint32_t next_reduction() {
     this->collection_->settle_join(*this);
     return this->state_.next_reduction;
@@ -100,12 +100,12 @@ class Chare : public detail::TessContributor<IndexType> {
   ///
   /// If rounds overlap (one is started before the result of the last one is known) while elements
   /// are inserted, name them: contribute(RoundId{k}, …) gives a value of round k, and
-  /// insert(RoundId{k}, …) an element that is in round k and later ones. Calls may overtake each other
-  /// then. Otherwise insert elements while no round is under way, and await an epoch around it, in
-  /// two cases. If rounds overlap: a new element that contributes to a round before its first is
-  /// refused by name. And if elements contribute in an entry method that another array or group
-  /// calls, or the main program: an element whose insertion was not awaited is refused by name (a
-  /// coroutine of a broadcast that awaits such a message is no such case).
+  /// insert(RoundId{k}, …) an element that is in round k and later ones. Calls may overtake each
+  /// other then. Otherwise insert elements while no round is under way, and await an epoch around
+  /// it, in two cases. If rounds overlap: a new element that contributes to a round before its
+  /// first is refused by name. And if elements contribute in an entry method that another array or
+  /// group calls, or the main program: an element whose insertion was not awaited is refused by
+  /// name (a coroutine of a broadcast that awaits such a message is no such case).
   using detail::TessContributor<IndexType>::contribute;
 };
 

@@ -15,11 +15,10 @@
 //       if (++state.step % 10 == 0) co_await tess::checkpoint(folder, state);
 //     }
 //
-// Saved are the elements of all arrays, groups, single chares and sections, wherever they are, and
-// the state object of the main coroutine, with the proxies in it. Elements need a default
-// constructor and serialize(), as for migration. After a restart they are on the homes of their
-// indices, single chares where they were. On another number of PEs these are spread as a new run
-// spreads them.
+// A checkpoint has the elements of all arrays, groups, single chares and sections, and the state
+// object of the main coroutine, with the proxies in it. Elements need a default constructor and
+// serialize(), as for migration. After a restart they are on the homes of their indices, single
+// chares where they were. On another number of PEs these are spread as a new run spreads them.
 //
 // A checkpoint is made at a quiet point: checkpoint() waits until no message is under way, and
 // throws an Error that names what waits if something does: a coroutine of a chare, an unfinished
@@ -28,12 +27,12 @@
 // CheckpointOptions::buddy_copies: the folder is in the memory of each host (/dev/shm), and a
 // second host has a copy of each file. A restart finds what is left when a host was lost.
 //
-// Not saved: futures, timers, balancers. A state with a future does not compile. A callback to a
-// future may be left over in the state or in an element; after a restart a call of it ends the run
-// with an error, so make the future again and send its new callback. Before restart() there is no
-// future, no timer and no array yet, nor one that has ended. Call start_balancing() again; the loads
-// of balanced elements are saved, and BalancerProxy::place_again() uses them. Process groups and
-// read-only data cannot be saved; destroy() them before.
+// Futures, timers and balancers are not saved. A state with a future does not compile. A callback
+// to a future may be left over in the state or in an element; after a restart a call of it ends the
+// run with an error, so make the future again and send its new callback. Before restart() there is
+// no future, no timer and no array yet, nor one that has ended. Call start_balancing() again; the
+// loads of balanced elements are saved, and BalancerProxy::place_again() uses them. Process groups
+// and read-only data cannot be saved; destroy() them before.
 #pragma once
 
 #include "runtime/checkpoint/restore.hpp"
@@ -50,13 +49,13 @@
 
 namespace tess {
 
-/// Saves the run in `folder`, which all processes can reach, unless there are buddy copies. Only in
-/// the main coroutine, outside of epochs. Throws Error if the run is not quiet, if the files cannot
-/// be written, or if the folder has checkpoints of another run: of one that is neither this run nor
-/// one that this run, or one before it, went on with by restart() (if the folder has one of these,
-/// those of another restart from it count as its own); then the run can go on. The state is packed
-/// once all messages are done, as the elements are, and lives until the task ends. `note`: a text
-/// for people in the manifest, such as the program's options and the step.
+/// Saves the run in `folder`, which all processes can reach, unless there are buddy copies. Called
+/// in the main coroutine, outside of epochs. Throws Error if the run is not quiet, if the files
+/// cannot be written, or if the folder has checkpoints of another run: of one that is neither this
+/// run nor one that this run, or one before it, went on with by restart() (if the folder has one of
+/// these, those of another restart from it count as its own); then the run can go on. The state is
+/// packed once all messages are done, as the elements are, and lives until the task ends. `note`: a
+/// text for people in the manifest, such as the program's options and the step.
 template <class State>
 [[nodiscard]] Task checkpoint(const std::string& folder, const State& state,
                               const CheckpointOptions& options = {}, std::string note = {}) {

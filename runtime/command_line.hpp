@@ -36,7 +36,7 @@ struct OptionState;
 /// CommandLine.
 class Option {
  public:
-  /// Both are included; a variable that is a double takes any number between.
+  /// Both bounds are included; a variable that is a double takes any number between.
   Option& between(std::int64_t least, std::int64_t most);
   Option& positive();
   Option& one_of(const std::vector<std::string>& values);
@@ -46,7 +46,7 @@ class Option {
   Option& joined_by(char separator);
   /// The number of values that follow the name. What is above `least` must not look like an option.
   Option& takes(int least, int most);
-  /// Known once the line is parsed.
+  /// It is known once the line is parsed.
   [[nodiscard]] bool is_given() const;
 
  private:
@@ -69,9 +69,9 @@ class CommandLine {
   /// `name` is "--name", "-n,--name", "--name FILE" if the help should call the value so, or "NAME"
   /// for an argument that is known by its place. `value` holds the default, and parse() assigns
   /// what is given; it must outlive the CommandLine. T is std::int32_t, std::uint64_t, double,
-  /// std::string, a vector of one of these, or an optional of one of the integers. Of several values
-  /// the last counts; a vector takes one value each time that its "--name" is given, and as an
-  /// argument all that remain. The help adds the default unless `meaning` has the word.
+  /// std::string, a vector of one of these, or an optional of one of the integers. Of several
+  /// values the last counts; a vector takes one value each time that its "--name" is given, and as
+  /// an argument all that remain. The help adds the default unless `meaning` has the word.
   template <class T>
   Option option(const std::string& name, T& value, const std::string& meaning);
   Option flag(const std::string& name, bool& value, const std::string& meaning);
@@ -83,15 +83,15 @@ class CommandLine {
   /// The text of --help; with the footer once the line is parsed.
   [[nodiscard]] std::string help() const;
 
-  /// Known once the line is parsed. False for a name that is no option.
+  /// It is known once the line is parsed; false for a name that is no option.
   [[nodiscard]] bool is_given(const std::string& name) const;
   /// Throws tess::Error (bad_argument) if one of the options is given, since it needs `what`.
   void refuse_without(const std::string& what, std::initializer_list<const char*> names) const;
   /// Throws refuse_together() if one of the options is given, since `other` leaves it unused; the
   /// message has its value.
   void refuse_beside(const std::string& other, std::initializer_list<const char*> names) const;
-  /// The value of an option as text, whether it is given or the default: equal for equal values, and
-  /// for no others.
+  /// The value of an option as text, whether it is given or the default: equal for equal values,
+  /// and for no others.
   [[nodiscard]] std::string value(const std::string& name) const;
 
  private:

@@ -29,7 +29,7 @@ class ElementProxy : public Sends<ElementProxy<C, IndexType>> {
   template <class Self>
   using Verbs = Sends<Self>;
 
-  /// Of no element: it can only be assigned to.
+  /// It refers to no element: it can only be assigned to.
   ElementProxy() = default;
   ElementProxy(CollectionId collection, const Index& index)
       : collection_(collection), index_(index) {}
@@ -47,8 +47,8 @@ class ElementProxy : public Sends<ElementProxy<C, IndexType>> {
     construct(pe, detail::Demand::insert, 0, std::forward<Args>(args)...);
   }
   /// Creates the element on this PE, or another; its first contribution is to this round, to which
-  /// all elements contribute by contribute(RoundId, …). What contributes to the round is called after
-  /// this call, or as its consequence.
+  /// all elements contribute by contribute(RoundId, …). What contributes to the round is called
+  /// after this call, or as its consequence.
   template <class... Args>
   void insert(RoundId joins, Args&&... args) const {
     insert_on(current_pe().id(), joins, std::forward<Args>(args)...);

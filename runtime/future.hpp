@@ -7,15 +7,15 @@
 // The callback can be sent anywhere; the result arrives at the PE on which callback() was called
 // first. It is taken once (a second co_await ends the job), and the future must outlive it: make it
 // a local variable of the coroutine that awaits it, or a member of an element that does not migrate
-// between callback() and co_await. Elsewhere in the process a check ends the job while the result is
-// not there; to another process a future does not go along. A Future<void> gets no value.
+// between callback() and co_await. Elsewhere in the process a check ends the job while the result
+// is not there; to another process a future does not go along. A Future<void> gets no value.
 //
-// The same in one line, where the callback is the last argument of a broadcast:
+// One line does the same, where the callback is the last argument of a broadcast:
 //
 //     const double t = co_await blocks.reduce<&Block::add>();
 //
-// The future's slot is in its PE's table, by number, from its first use until its result is there: the
-// result is written there even if the future has gone to another PE meanwhile, with its element.
+// The future's slot is in its PE's table, by number, from its first use until its result is there:
+// the result is written there even if the future has gone to another PE meanwhile.
 #pragma once
 
 #include "runtime/callback.hpp"
@@ -45,7 +45,7 @@ class FutureBase {
   FutureBase(const FutureBase&) = delete;
   FutureBase& operator=(const FutureBase&) = delete;
 
-  // For when_all and when_any.
+  // when_all and when_any call these.
   void wait(Waiter& waiter);
   void withdraw() {
     if (slot_ != nullptr) slot_->waiting = nullptr;
@@ -124,7 +124,8 @@ class Future : public detail::FutureBase {
                   "the value of a future needs a default constructor: where it arrives it is made "
                   "empty and then read");
   }
-  /// Not while a coroutine waits for it, and on its own PE only. The other can only be assigned to.
+  /// A future moves on its own PE only, while no coroutine waits for it. The other can only be
+  /// assigned to then.
   Future(Future&& other) noexcept : FutureBase(&make_slot) { take(other); }
   Future& operator=(Future&& other) noexcept {
     replace(other);

@@ -25,7 +25,7 @@ template <class Derived>
 class Group : public detail::TessContributor<Index1> {
  public:
   using Index = Index1;
-  /// For Array: there is one element per PE, and the element with index i is on PE i.
+  /// Array reads it: there is one element per PE, and the element with index i is on PE i.
   static constexpr bool one_per_pe = true;
   [[nodiscard]] static PeId place(const Index1& index, std::int32_t /*n_pes*/) {
     return PeId{index.x};
@@ -42,7 +42,7 @@ class Group : public detail::TessContributor<Index1> {
   using detail::TessContributor<Index1>::contribute;
 };
 
-/// Where the elements of create() are: one on each PE.
+/// Says where the elements of create() are: one on each PE.
 struct EachPe {};
 inline constexpr EachPe each_pe{};
 

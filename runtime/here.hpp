@@ -1,5 +1,5 @@
-// The PE that the calling code runs on, and the machine that it belongs to. Not for code outside a
-// run.
+// The PE that the calling code runs on, and the machine that it belongs to. Code outside a run
+// must not call these.
 #pragma once
 
 #include "runtime/core/duration.hpp"

@@ -92,7 +92,7 @@ class Mailbox {
     }
     Value await_resume() { return std::move(*value_); }
 
-    // For when_all and when_any.
+    // when_all and when_any call these.
     void wait(detail::Waiter& waiter) {
       waiting_ = &waiter;
       box_.waiting_.push_back(this);

@@ -61,13 +61,13 @@ int run_on(Setup& setup, std::function<void()> main);
 /// (runtime/command_line.hpp) has read them, or the program itself, which then sets argc to 1.
 int guarded(int& argc, char** argv, const std::function<int(Setup&)>& body);
 
-/// The same for a program that makes no machine or several.
+/// Does the same for a program that makes no machine or several.
 int guarded(const char* program, const std::function<int()>& body);
 
 namespace detail {
 /// The words that guarded() gave to its body have been read.
 void words_are_read();
-/// For a program without words of its own: throws for those that are left.
+/// A program without words of its own calls it: it throws for those that are left.
 void refuse_words(int argc, char** argv);
 template <class Main>
 std::function<void()> as_message(Main main) {
@@ -87,7 +87,7 @@ int run(Setup& setup, Main main) {
   return run_on(setup, detail::as_message(std::move(main)));
 }
 
-/// For programs without options of their own.
+/// Programs without options of their own call this.
 template <class Main>
 int run(int argc, char** argv, Main main) {
   return guarded(argc, argv, [&](Setup& setup) {
@@ -96,7 +96,7 @@ int run(int argc, char** argv, Main main) {
   });
 }
 
-/// On the simulated machine: advances the virtual clock of this PE by the duration of its work and
+/// Advances the virtual clock of this PE on the simulated machine by the duration of its work, and
 /// returns true. On a real machine it does nothing and returns false, and the caller does the work.
 bool charge(std::chrono::nanoseconds work);
 
@@ -107,7 +107,7 @@ void exit(int code);
 /// Writes the parts to standard output in one piece. (mpirun passes on what it reads in pieces of 4
 /// KiB, so it may mix lines of processes that print much at once.)
 void print_text(const std::string& text);
-/// The same for parts that text() can write. An index is printed as print(index_text(index())).
+/// Writes parts that text() can write. An index is printed as print(index_text(index())).
 template <class... Parts>
 void print(const Parts&... parts) {
   static_assert((Writable<Parts> && ...),

@@ -1,8 +1,8 @@
-// tess::Task: the result type of an entry method that may wait; tess::TaskOf<T>: of a coroutine that
-// gives a value. It runs immediately up to the first co_await that is not ready; when the awaited
-// result is there, the coroutine is put back into the queue of its PE. While a coroutine waits, its
-// element neither migrates nor ends, and its epoch is not done. Only named functions (and the
-// function passed to run()) may be coroutines.
+// tess::Task: the result type of an entry method that may wait; tess::TaskOf<T>: of a coroutine
+// that gives a value. It runs immediately up to the first co_await that is not ready; when the
+// awaited result is there, the coroutine is put back into the queue of its PE. While a coroutine
+// waits, its element neither migrates nor ends, and its epoch is not done. Only named functions
+// (and the function passed to run()) may be coroutines.
 #pragma once
 
 #include "runtime/pe/block.hpp"
@@ -149,8 +149,8 @@ class [[nodiscard]] Task : public detail::AnyTask {
 ///       const double mean = co_await mean_level(lakes);
 ///
 /// T can be moved; it needs neither a copy nor a default constructor. The first co_await takes the
-/// value; a second one ends the job. An exception passes as with Task. The coroutine runs when it is
-/// called, so several may be under way at once: call them, then await one after the other, or a
+/// value; a second one ends the job. An exception passes as with Task. The coroutine runs when it
+/// is called, so several may be under way at once: call them, then await one after the other, or a
 /// vector of them with when_all() (when.hpp). The value of a task that is not awaited is dropped.
 ///
 /// An entry method that is asked may return TaskOf (ask.hpp). One that is sent to may not, and
@@ -188,7 +188,7 @@ class [[nodiscard]] TaskOf : public detail::AnyTask {
   explicit TaskOf(detail::TaskHandle handle) : AnyTask(handle) {}
 };
 
-/// For awaitables: suspends a coroutine and records what it waits for. The awaitable resumes it
+/// An awaitable calls it to suspend a coroutine and to record what it waits for, and resumes it
 /// through resume_later().
 void suspend(Task::Handle task, std::function<detail::WaitReason()> waits_for);
 
@@ -211,7 +211,7 @@ class Waiter {
   }
   /// A result is there.
   void wake();
-  /// The same at the end of a message of the runtime: without a message of its own.
+  /// Does the same at the end of a message of the runtime, without a message of its own.
   void wake_at_end();
 
  private:

@@ -1,5 +1,5 @@
 // Maps of indices to PEs: where the initial elements of an array are created, and which PE is the
-// home of an index. Not part of runtime.hpp.
+// home of an index. runtime.hpp does not include this header.
 //
 // Sample: tests/samples/index_map.cpp
 //

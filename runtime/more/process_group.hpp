@@ -89,7 +89,7 @@ class ProcessPart : public Group<ProcessPart<G>> {
   /// Calls entry method F of the object; returns what that returns.
   template <auto F>
   typename EntryTraits<F>::Result run(typename EntryTraits<F>::Arguments arguments) {
-    // By std::invoke(): g++ 12 warns of (object.*F) where F is of a base class and gives a value.
+    // It uses std::invoke(): g++ 12 warns of (object.*F) where F of a base class gives a value.
     const auto call = [&arguments](auto& object) {
       return std::apply(
           [&object](auto&... argument) { return std::invoke(F, object, std::move(argument)...); },
@@ -97,7 +97,7 @@ class ProcessPart : public Group<ProcessPart<G>> {
     };
     return run_as(call, F);
   }
-  /// The same for a broadcast: on one PE of each process.
+  /// A broadcast does the same on one PE of each process.
   template <auto F>
   void run_once(typename EntryTraits<F>::Arguments arguments) {
     if (current_pe().machine().is_first_of_process(this->pe())) run<F>(std::move(arguments));
@@ -337,7 +337,7 @@ class ProcessGroupProxy : public detail::WholeHandle<ProcessGroupProxy<G>>,
   }
 };
 
-/// Where the objects of create() are: one in each process.
+/// Says where the objects of create() are: one in each process.
 struct EachProcess {};
 inline constexpr EachProcess each_process{};
 

@@ -39,7 +39,7 @@ class [[nodiscard]] RoomAwait {
 [[nodiscard]] inline detail::RoomAwait room(PeId to) {
   return detail::RoomAwait(to);
 }
-/// The same for a message to an element or to a member of a group: array[index], group[pe].
+/// Completes likewise for a message to an element or a group's member: array[index], group[pe].
 template <class Proxy>
 [[nodiscard]] detail::RoomAwait room(const Proxy& to)
   requires requires { to.next_pe(); }

@@ -87,7 +87,7 @@ ChareProxy<C> create_for_one(PeId given) {
 
 }  // namespace detail
 
-/// Where the element of create() is: on that PE, or on one that the runtime chooses; many such
+/// Says where the element of create() is: on that PE, or on one that the runtime chooses; many such
 /// chares are spread over all PEs.
 struct One {
   std::optional<PeId> pe{};

@@ -1,5 +1,5 @@
-// Waiting for several results at once: asks, futures, epochs, messages of mailboxes, and times. Not
-// part of runtime.hpp.
+// Waiting for several results at once: asks, futures, epochs, messages of mailboxes, and times.
+// runtime.hpp does not include this header.
 //
 // Sample: tests/samples/ask.cpp
 //
@@ -59,7 +59,7 @@ class [[nodiscard]] Sleep {
   }
   void await_resume() const {}
 
-  // For when_all and when_any.
+  // when_all and when_any call these.
   void wait(detail::Waiter& waiter) {
     TESS_CHECK(state_->waiting == nullptr, "two coroutines await one sleep()");
     state_->waiting = &waiter;
@@ -367,7 +367,7 @@ template <class... A>
   static_assert(detail::check_joined<A...>());
   return detail::WhenAll<detail::PartsOf<A...>>(detail::PartsOf<A...>(std::forward<A>(a)...));
 }
-/// The same of a vector: gives a vector.
+/// Awaits a vector likewise, and gives a vector.
 template <class A>
 [[nodiscard]] auto when_all(std::vector<A>&& a) {
   static_assert(detail::check_joined<A>());
@@ -405,7 +405,7 @@ TaskOf<std::vector<T>> await_each(std::vector<TaskOf<T>> tasks) {
 inline Task when_all(std::vector<Task>&& tasks) {
   return detail::await_each(std::move(tasks));
 }
-/// The same of tasks that give values: gives a vector of them.
+/// Awaits tasks that give values, and gives a vector of these.
 template <class T>
 TaskOf<std::vector<T>> when_all(std::vector<TaskOf<T>>&& tasks) {
   return detail::await_each(std::move(tasks));
@@ -417,7 +417,7 @@ template <class... A>
   static_assert(detail::check_joined<A...>());
   return detail::WhenAny<detail::PartsOf<A...>>(detail::PartsOf<A...>(std::forward<A>(a)...));
 }
-/// The same of a vector, which is not empty: gives {which, value}.
+/// Awaits the first of a vector, which is not empty; gives {which, value}.
 template <class A>
 [[nodiscard]] auto when_any(std::vector<A>&& a) {
   static_assert(detail::check_joined<A>());
