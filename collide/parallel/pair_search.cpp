@@ -1,7 +1,7 @@
 #include "collide/parallel/pair_search.hpp"
 
 #include "collide/parallel/piece_pairs.hpp"
-#include "collide/search/costs.hpp"
+#include "collide/problem/costs.hpp"
 #include "collide/search/voxel_search.hpp"
 
 #include <algorithm>

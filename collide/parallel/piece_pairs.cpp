@@ -1,6 +1,6 @@
 #include "collide/parallel/piece_pairs.hpp"
 
-#include "collide/search/thin_objects.hpp"
+#include "collide/problem/thin_objects.hpp"
 
 #include <span>
 

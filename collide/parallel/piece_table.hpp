@@ -1,10 +1,10 @@
-// Long thin objects in pieces (search/thin_objects.hpp): for each box of a list, the object of
+// Long thin objects in pieces (problem/thin_objects.hpp): for each box of a list, the object of
 // which it is a piece. What a voxel knows of the whole object is enough to make all its pieces
 // again.
 #pragma once
 
 #include "collide/capsule.hpp"
-#include "collide/search/slim_capsule.hpp"
+#include "collide/problem/slim_capsule.hpp"
 
 #include <cstdint>
 #include <vector>

@@ -1,8 +1,8 @@
 #include "collide/search/choose_pieces.hpp"
 
-#include "collide/search/choose_grid.hpp"
-#include "collide/search/costs.hpp"
-#include "collide/search/survey.hpp"
+#include "collide/problem/choose_grid.hpp"
+#include "collide/problem/costs.hpp"
+#include "collide/problem/survey.hpp"
 
 #include <algorithm>
 #include <array>

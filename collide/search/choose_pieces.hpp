@@ -2,7 +2,7 @@
 // should be: by expected cost, from a sample.
 #pragma once
 
-#include "collide/search/thin_objects.hpp"
+#include "collide/problem/thin_objects.hpp"
 
 namespace tess::collide::search {
 

@@ -1,10 +1,11 @@
 // A search for pairs: it chooses which sets are compared, on one level or on several.
 #include "collide/pairs.hpp"
 
+#include "collide/problem/instantiate.hpp"
+#include "collide/problem/octaves.hpp"
+#include "collide/problem/size_levels.hpp"
+#include "collide/problem/survey.hpp"
 #include "collide/search/choose_pieces.hpp"
-#include "collide/search/instantiate.hpp"
-#include "collide/search/size_classes.hpp"
-#include "collide/search/survey.hpp"
 #include "collide/search/voxel_search.hpp"
 #include "runtime/core/error.hpp"
 
@@ -53,38 +54,36 @@ class Searcher {
     bool swapped = false;                  // a is the second set
     std::optional<Choice<D>> choice = {};  // once it is known
   };
-  /// A problem divided by the sizes of its objects (size_classes.hpp): each class with itself and
-  /// with all smaller ones.
+  /// A problem divided by the sizes of its objects (size_levels.hpp): each level with itself and
+  /// with all levels below.
   struct Levels {
     /// As if there were `scale` objects for each.
     Levels(Searcher& searcher, const SubProblem& whole, double scale)
         : Levels(searcher, whole, scale,
-                 SizeClasses<Real>(
-                     base_of_classes(whole, searcher.search_.chooser()
-                                                .choose(whole.problem, whole.bounds, true, scale)
-                                                .n_cells))) {}
-    Levels(Searcher& searcher, const SubProblem& whole, double scale,
-           const SizeClasses<Real>& classes)
-        : by_class_a(whole.problem.boxes_a, whole.problem.a, classes),
-          by_class_b(whole.problem.boxes_b, whole.problem.b, classes) {
+                 levels_of(whole, searcher.search_.chooser()
+                                      .choose(whole.problem, whole.bounds, true, scale)
+                                      .n_cells)) {}
+    Levels(Searcher& searcher, const SubProblem& whole, double scale, const SizeLevels& levels)
+        : by_level_a(whole.problem.boxes_a, whole.problem.a, levels),
+          by_level_b(whole.problem.boxes_b, whole.problem.b, levels) {
       const Problem<Real, D>& all = whole.problem;
       const auto add = [&](const Problem<Real, D>& problem, bool swapped) {
         if (problem.n_comparisons() == 0) return;
         parts.push_back({problem, bounds_of(problem.boxes_a, problem.a), swapped});
         cost += searcher.cost_of(parts.back(), scale);
       };
-      for (std::size_t c = 0; c < classes.size(); ++c) {
-        const auto a = by_class_a.of(c), b = by_class_b.of(c);
+      for (std::size_t l = 0; l < static_cast<std::size_t>(levels.n()); ++l) {
+        const auto a = by_level_a.of(l), b = by_level_b.of(l);
         if (all.within_a) {
-          add({all.boxes_a, all.boxes_a, a, by_class_a.below(c), true}, false);
+          add({all.boxes_a, all.boxes_a, a, by_level_a.below(l), true}, false);
         } else {
-          add({all.boxes_a, all.boxes_b, a, by_class_b.below(c + 1), false}, false);
-          add({all.boxes_b, all.boxes_a, b, by_class_a.below(c), false}, true);
+          add({all.boxes_a, all.boxes_b, a, by_level_b.below(l + 1), false}, false);
+          add({all.boxes_b, all.boxes_a, b, by_level_a.below(l), false}, true);
         }
       }
     }
 
-    ByClass by_class_a, by_class_b;
+    ByLevel by_level_a, by_level_b;
     std::vector<SubProblem> parts;
     double cost = 0;
   };
@@ -127,13 +126,13 @@ class Searcher {
     SubProblem sample = whole;
     sample.problem.a = a;
     sample.problem.b = b;
-    // Objects of one class are one part, whose cost is another estimate of the same search.
+    // Objects of one level are one part, whose cost is another estimate of the same search.
     const Levels levels(*this, sample, scale);
     return levels.parts.size() > 1 && levels.cost < cost_of(whole);
   }
-  /// The largest size of class 0: the voxel that would be chosen if all objects were points, or the
-  /// smallest object.
-  static Real base_of_classes(const SubProblem& whole, const CellAt<D>& cells_of_points) {
+  /// Level 0 has the octaves up to that of the voxel that would be chosen if all objects were
+  /// points, or of the smallest object.
+  static SizeLevels levels_of(const SubProblem& whole, const CellAt<D>& cells_of_points) {
     Real smallest = std::numeric_limits<Real>::infinity(), voxel = smallest;
     for (const Entry entry : whole.problem.a)
       smallest = std::min(smallest, longest_extent(whole.problem.boxes_a[object_of(entry)]));
@@ -143,7 +142,9 @@ class Searcher {
       if (cells_of_points[k] > 1)
         voxel = std::min(voxel, (whole.bounds.hi[k] - whole.bounds.lo[k]) /
                                     static_cast<Real>(cells_of_points[k]));
-    return std::max(std::isfinite(voxel) ? voxel : Real{0}, smallest);
+    const Real most = std::max(std::isfinite(voxel) ? voxel : Real{0}, smallest);
+    const double next_octave{size_of_octave<Real>(octave_of(most) + 1)};
+    return SizeLevels(std::nextafter(next_octave, 0.0));
   }
 
   void check_memory(const SubProblem& whole, const TheBox& bounds) const {

@@ -1,7 +1,7 @@
 #include "collide/search/thin_pairs.hpp"
 
+#include "collide/problem/survey.hpp"
 #include "collide/search/choose_pieces.hpp"
-#include "collide/search/survey.hpp"
 
 #include <algorithm>
 #include <array>

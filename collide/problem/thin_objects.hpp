@@ -11,8 +11,8 @@
 #pragma once
 
 #include "collide/pairs.hpp"
-#include "collide/search/scratch.hpp"
-#include "collide/search/slim_capsule.hpp"
+#include "collide/problem/scratch.hpp"
+#include "collide/problem/slim_capsule.hpp"
 
 #include <optional>
 #include <span>

@@ -1,4 +1,4 @@
-#include "collide/search/thin_objects.hpp"
+#include "collide/problem/thin_objects.hpp"
 
 #include <cmath>
 
