@@ -7,7 +7,6 @@
 #include "runtime/core/error.hpp"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -167,7 +166,7 @@ PlanOfPieces choose_pieces(const Summary& summary, const ColliderOptions& option
   const detail::Capsules capsules{summary.capsules.data(), [](const void* of, std::size_t i) {
                                     return static_cast<const Capsule*>(of)[i];
                                   }};
-  const search::ObjectsWithCapsules<double> sample{summary.sample, capsules};
+  const search::ThinSet<double> sample{summary.sample, capsules};
   const std::optional<double> longest = search::choose_pieces(
       search::ThinSets<double>(&sample, 1), {.touching = options.rules.touching},
       static_cast<double>(summary.n) / static_cast<double>(summary.sample.size()));
@@ -179,7 +178,7 @@ PlanOfPieces choose_pieces(const Summary& summary, const ColliderOptions& option
 Summary divided(const Summary& summary, double longest) {
   Summary out = summary;
   out.sample.clear();
-  std::array<Aabb, search::most_pieces> pieces;
+  search::BoxesOfPieces<double> pieces;
   for (std::size_t i = 0; i < summary.sample.size(); ++i) {
     const Capsule& capsule = summary.capsules[i];
     const Aabb* const end =
