@@ -28,6 +28,7 @@
 #include "collide/hit.hpp"
 #include "runtime/core/algorithm.hpp"
 
+#include <array>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
@@ -82,16 +83,10 @@ struct PairSink {
                std::size_t n, bool swapped);
 };
 
-template <class Real, std::size_t D>
-void search_pairs(std::span<const Box<Real, D>> boxes, const PairOptions& options, PairSink sink);
-template <class Real, std::size_t D>
-void search_pairs(std::span<const Box<Real, D>> a, std::span<const Box<Real, D>> b,
-                  const PairOptions& options, PairSink sink);
-
-/// The capsules of the objects of a set.
+/// The capsules of the objects of a set, or none.
 struct Capsules {
-  const void* objects;
-  Capsule (*of)(const void* objects, std::size_t i);
+  const void* objects = nullptr;
+  Capsule (*of)(const void* objects, std::size_t i) = nullptr;
 
   [[nodiscard]] Capsule operator[](std::size_t i) const { return checked(of(objects, i)); }
 };
@@ -99,15 +94,19 @@ struct Capsules {
 /// Whether most of n objects are much longer than thick, as far as a few of them show.
 [[nodiscard]] bool seem_thin(const Capsules& capsules, std::size_t n);
 
-/// Searches objects that have capsules. A pair of long thin objects is passed on only if their
-/// capsules may have a common point, and never twice.
-template <class Real>
-void search_pairs(std::span<const Box<Real, 3>> boxes, const Capsules& capsules,
-                  const PairOptions& options, PairSink sink);
-template <class Real>
-void search_pairs(std::span<const Box<Real, 3>> a, const Capsules& capsules_a,
-                  std::span<const Box<Real, 3>> b, const Capsules& capsules_b,
-                  const PairOptions& options, PairSink sink);
+/// A set of objects that is searched.
+template <class TheBox>
+struct ObjectSet {
+  std::span<const TheBox> boxes;
+  Capsules capsules{};  ///< in three dimensions only
+};
+
+/// Passes on the pairs within one set, or those across two sets. If all objects have capsules, a
+/// pair of long thin ones is passed on only if their capsules may have a common point, and never
+/// twice.
+template <class TheBox>
+void search_pairs(std::span<const ObjectSet<TheBox>> sets, const PairOptions& options,
+                  PairSink sink);
 
 template <class T>
 inline constexpr bool is_box = false;
@@ -162,6 +161,16 @@ Capsules capsules_of(std::span<const Object> objects) {
   return {objects.data(), [](const void* of, std::size_t i) {
             return capsule_of(static_cast<const Object*>(of)[i]);
           }};
+}
+
+/// The boxes are those of boxes_of().
+template <class Object>
+ObjectSet<BoxOf<Object>> set_of(std::span<const Object> objects,
+                                std::span<const BoxOf<Object>> boxes) {
+  if constexpr (HasCapsule<Object>)
+    return {boxes, capsules_of(objects)};
+  else
+    return {boxes};
 }
 
 }  // namespace detail
@@ -225,18 +234,15 @@ template <class Object, class Found, class Wanted = EveryPair>
 void for_each_pair(std::span<const Object> objects, const PairOptions& options, Found&& found,
                    const Wanted& wanted = {}) {
   const auto boxes = detail::boxes_of(objects);
-  // It has no branch, which would be mispredicted for every second pair.
+  // Without a branch, which would be mispredicted for every second pair.
   auto ordered = [&](std::uint32_t i, std::uint32_t j) { found(std::min(i, j), std::max(i, j)); };
   const auto test = [&](std::uint32_t i, std::uint32_t j) {
     return wanted(std::min(i, j), std::max(i, j)) &&
            detail::objects_intersect(objects[i], objects[j], options.touching);
   };
   detail::for_each_tested(options, test, ordered, [&](detail::PairSink sink) {
-    const std::span<const detail::BoxOf<Object>> all(boxes);
-    if constexpr (detail::HasCapsule<Object>)
-      detail::search_pairs(all, detail::capsules_of(objects), options, sink);
-    else
-      detail::search_pairs(all, options, sink);
+    const auto set = detail::set_of(objects, boxes);
+    detail::search_pairs<detail::BoxOf<Object>>({&set, 1}, options, sink);
   });
 }
 
@@ -252,12 +258,8 @@ void for_each_pair(std::span<const A> a, std::span<const B> b, const PairOptions
     return wanted(i, j) && detail::objects_intersect(a[i], b[j], options.touching);
   };
   detail::for_each_tested(options, test, found, [&](detail::PairSink sink) {
-    const std::span<const detail::BoxOf<A>> all_a(boxes_a), all_b(boxes_b);
-    if constexpr (detail::HasCapsule<A> && detail::HasCapsule<B>)
-      detail::search_pairs(all_a, detail::capsules_of(a), all_b, detail::capsules_of(b), options,
-                           sink);
-    else
-      detail::search_pairs(all_a, all_b, options, sink);
+    const std::array sets{detail::set_of(a, boxes_a), detail::set_of(b, boxes_b)};
+    detail::search_pairs<detail::BoxOf<A>>(sets, options, sink);
   });
 }
 

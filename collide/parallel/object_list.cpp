@@ -1,7 +1,8 @@
 #include "collide/parallel/object_list.hpp"
 
-#include "collide/search/survey.hpp"
-#include "collide/search/thin_objects.hpp"
+#include "collide/problem/octaves.hpp"
+#include "collide/problem/survey.hpp"
+#include "collide/problem/thin_objects.hpp"
 #include "runtime/core/error.hpp"
 
 #include <algorithm>
@@ -102,7 +103,7 @@ void ObjectList::append(const Objects& objects, PeId pe) {
   check_numbers(objects.first, n);
   boxes_.reserve(begin + n);
   Aabb bounds = bounds_;
-  std::array<std::uint8_t, search::n_octaves<double>> octaves = octaves_;
+  std::array<std::uint8_t, search::Octaves::n> octaves = octaves_;
   constexpr std::size_t most = 128;
   for (std::size_t at = 0; at < n; at += most) {
     const auto block = objects.boxes.subspan(at, std::min(most, n - at));

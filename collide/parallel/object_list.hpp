@@ -7,8 +7,9 @@
 #include "collide/hit.hpp"
 #include "collide/objects.hpp"
 #include "collide/parallel/piece_table.hpp"
-#include "collide/search/entry.hpp"
-#include "collide/search/scratch.hpp"
+#include "collide/problem/entry.hpp"
+#include "collide/problem/octaves.hpp"
+#include "collide/problem/scratch.hpp"
 #include "runtime/core/algorithm.hpp"
 #include "runtime/core/hash.hpp"
 #include "runtime/core/ids.hpp"
@@ -64,7 +65,7 @@ class ObjectList {
     return {boxes_.data(), boxes_.size()};
   }
   [[nodiscard]] const Aabb& bounds() const noexcept { return bounds_; }
-  /// True if the longest extent of an object has this octave (search/survey.hpp).
+  /// True if the longest extent of an object has this octave.
   [[nodiscard]] bool has_octave(std::size_t octave) const noexcept { return octaves_[octave] != 0; }
 
   /// Where objects come from.
@@ -144,7 +145,7 @@ class ObjectList {
   search::Scratch<Aabb> undivided_;  // the memory is kept
   bool several_models_ = false;
   Aabb bounds_ = no_box<double, 3>();
-  std::array<std::uint8_t, 2048> octaves_{};
+  std::array<std::uint8_t, search::Octaves::n> octaves_{};
 };
 
 }  // namespace tess::collide

@@ -1,7 +1,7 @@
 #include "collide/parallel/pair_search.hpp"
 
-#include "collide/parallel/piece_pairs.hpp"
-#include "collide/search/costs.hpp"
+#include "collide/problem/costs.hpp"
+#include "collide/problem/piece_pairs.hpp"
 #include "collide/search/voxel_search.hpp"
 
 #include <algorithm>
@@ -11,6 +11,7 @@ namespace tess::collide {
 namespace {
 
 using Search = search::VoxelSearch<double, 3>;
+using PiecePairs = search::PiecePairs<PieceTable>;
 
 /// The scratch memory of a thread.
 struct Scratch {
@@ -43,7 +44,7 @@ struct Receiver {
     if (of_first.pieces().empty()) return self.add(of_first, first, of_second, second, n);
     PiecePairs& pairs = scratch().of_pieces;
     for (std::size_t begin = 0; begin < n; begin += PiecePairs::most) {
-      pairs.find(of_first, first + begin, of_second, second + begin,
+      pairs.find(of_first.pieces(), first + begin, of_second.pieces(), second + begin,
                  std::min(n - begin, PiecePairs::most), self.plan.rules.touching);
       self.add(of_first, pairs.x(), of_second, pairs.y(), pairs.size());
     }

@@ -7,7 +7,7 @@
 #include "collide/parallel/object_list.hpp"
 #include "collide/parallel/plan.hpp"
 #include "collide/parallel/voxel_sort.hpp"
-#include "collide/search/entry.hpp"
+#include "collide/problem/entry.hpp"
 
 #include <memory>
 #include <span>

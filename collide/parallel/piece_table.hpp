@@ -1,12 +1,14 @@
-// Long thin objects in pieces (search/thin_objects.hpp): for each box of a list, the object of
+// Long thin objects in pieces (problem/thin_objects.hpp): for each box of a list, the object of
 // which it is a piece. What a voxel knows of the whole object is enough to make all its pieces
 // again.
 #pragma once
 
 #include "collide/capsule.hpp"
-#include "collide/search/slim_capsule.hpp"
+#include "collide/problem/slim_capsule.hpp"
+#include "collide/problem/thin_objects.hpp"
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace tess::collide {
@@ -50,6 +52,10 @@ class PieceTable {
   }
 
   [[nodiscard]] bool empty() const noexcept { return pieces_.empty(); }
+
+  // What search::PiecePairs needs (problem/piece_pairs.hpp).
+  using Boxes = search::BoxesOfPieces<double>;
+  [[nodiscard]] static constexpr bool in_pieces() noexcept { return true; }
   /// The position of a box's object among the objects and capsules.
   [[nodiscard]] std::uint32_t object_of(std::uint32_t box) const noexcept {
     return pieces_[box].object;
@@ -61,7 +67,14 @@ class PieceTable {
   [[nodiscard]] std::uint64_t number_of_object(std::uint32_t box) const noexcept {
     return pieces_[box].number_of_object;
   }
-  [[nodiscard]] const Object& object(std::uint32_t at) const noexcept { return objects_[at]; }
+  [[nodiscard]] const Aabb& box_of_object(std::uint32_t at) const noexcept {
+    return objects_[at].box;
+  }
+  /// They are made in `memory`.
+  [[nodiscard]] std::span<const Aabb> pieces_of(std::uint32_t at, Boxes& memory) const noexcept {
+    const Object& of = objects_[at];
+    return {memory.data(), search::cut(of.box, of.capsule, of.n_pieces, memory.data())};
+  }
   [[nodiscard]] const search::SlimCapsule* capsules() const noexcept { return capsules_.data(); }
 
   template <class Ar>

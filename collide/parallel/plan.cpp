@@ -1,12 +1,12 @@
 #include "collide/parallel/plan.hpp"
 
-#include "collide/search/choose_grid.hpp"
+#include "collide/problem/choose_grid.hpp"
+#include "collide/problem/octaves.hpp"
+#include "collide/problem/survey.hpp"
 #include "collide/search/choose_pieces.hpp"
-#include "collide/search/survey.hpp"
 #include "runtime/core/error.hpp"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -50,7 +50,7 @@ std::vector<Value> by_pe(const std::vector<Summary::Sampled>& sampled,
 
 Summary::Summary(const ObjectList& objects, std::int32_t pe, std::size_t n_sampled)
     : n(objects.size()), bounds(objects.bounds()), has_capsules(objects.has_capsules()) {
-  for (std::uint32_t octave = 0; octave < Octaves::n; ++octave)
+  for (std::uint32_t octave = 0; octave < search::Octaves::n; ++octave)
     if (objects.has_octave(octave)) octaves.add(octave);
   for (const ObjectList::Source& source : objects.sources()) add(source.model);
   if (n != 0 && !has_capsules) largest_radius = unknown_capsule.radius;
@@ -118,10 +118,8 @@ VoxelGrid Plan::grid(Level level) const {
 }
 
 Level Plan::level_of(double longest_extent) const noexcept {
-  Level level = 0;
-  double most = 2 * std::min({size[0], size[1], size[2]});
-  for (; longest_extent > most && level + 1 < most_levels; most *= 8) ++level;
-  return level;
+  const search::SizeLevels by_size(2 * std::ranges::min(size));
+  return std::min(by_size.of(longest_extent), most_levels - 1);
 }
 
 namespace {
@@ -168,7 +166,7 @@ PlanOfPieces choose_pieces(const Summary& summary, const ColliderOptions& option
   const detail::Capsules capsules{summary.capsules.data(), [](const void* of, std::size_t i) {
                                     return static_cast<const Capsule*>(of)[i];
                                   }};
-  const search::ObjectsWithCapsules<double> sample{summary.sample, capsules};
+  const search::ThinSet<double> sample{summary.sample, capsules};
   const std::optional<double> longest = search::choose_pieces(
       search::ThinSets<double>(&sample, 1), {.touching = options.rules.touching},
       static_cast<double>(summary.n) / static_cast<double>(summary.sample.size()));
@@ -180,7 +178,7 @@ PlanOfPieces choose_pieces(const Summary& summary, const ColliderOptions& option
 Summary divided(const Summary& summary, double longest) {
   Summary out = summary;
   out.sample.clear();
-  std::array<Aabb, search::most_pieces> pieces;
+  search::BoxesOfPieces<double> pieces;
   for (std::size_t i = 0; i < summary.sample.size(); ++i) {
     const Capsule& capsule = summary.capsules[i];
     const Aabb* const end =
@@ -193,7 +191,7 @@ Summary divided(const Summary& summary, double longest) {
   const std::uint32_t greatest = summary.octaves.greatest();
   const bool is_known = largest < std::numeric_limits<double>::infinity();
   out.octaves =
-      Octaves::up_to(is_known ? std::min(greatest, search::octave_of(largest)) : greatest);
+      search::Octaves::up_to(is_known ? std::min(greatest, search::octave_of(largest)) : greatest);
   return out;
 }
 
@@ -233,7 +231,7 @@ Plan make_plan(const Summary& summary, std::int32_t n_pes, const ColliderOptions
     edge = std::clamp(std::max(edge, std::ldexp(widest, -30)), 1e-300, 1e300);
     plan.size = {edge, edge, edge};
   }
-  for (std::uint32_t octave = 0; octave < Octaves::n; ++octave) {
+  for (std::uint32_t octave = 0; octave < search::Octaves::n; ++octave) {
     if (!boxes.octaves.has(octave)) continue;
     // From its least to its greatest size.
     const double least = octave == 0 ? 0 : search::size_of_octave<double>(octave);

@@ -2,15 +2,16 @@
 // was submitted on all PEs, so a collider follows a scene that changes.
 //
 // Level l has the objects whose longest extent is at most 2 * 8^l voxel sizes, and voxels of 8^l
-// sizes. All smaller objects visit its voxels (search/size_classes.hpp).
+// sizes. All smaller objects visit its voxels (problem/size_levels.hpp).
 #pragma once
 
 #include "collide/collider_options.hpp"
 #include "collide/hit.hpp"
 #include "collide/parallel/object_list.hpp"
-#include "collide/parallel/octaves.hpp"
-#include "collide/search/slim_capsule.hpp"
-#include "collide/serial/voxel_grid.hpp"
+#include "collide/problem/octaves.hpp"
+#include "collide/problem/size_levels.hpp"
+#include "collide/problem/slim_capsule.hpp"
+#include "collide/problem/voxel_grid.hpp"
 #include "runtime/run.hpp"
 
 #include <bit>
@@ -36,7 +37,7 @@ struct Summary {
     std::uint32_t n = 0;
   };
   std::vector<Sampled> sampled;
-  Octaves octaves;
+  search::Octaves octaves;
   std::vector<ModelId> models;  ///< at most three different ones
 
   Summary() = default;
@@ -57,8 +58,6 @@ struct JoinSummaries {
   Summary finish(Summary all) const;
 };
 
-/// One of the levels: 0 is the finest.
-using Level = std::int32_t;
 inline constexpr Level most_levels = 32;
 
 /// How long thin objects are searched: with their capsules, in pieces of a length or whole.

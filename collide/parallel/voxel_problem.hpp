@@ -2,8 +2,8 @@
 #pragma once
 
 #include "collide/parallel/part.hpp"
-#include "collide/search/choose_grid.hpp"
-#include "collide/search/scratch.hpp"
+#include "collide/problem/choose_grid.hpp"
+#include "collide/problem/scratch.hpp"
 
 #include <cstdint>
 #include <span>

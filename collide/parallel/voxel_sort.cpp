@@ -1,7 +1,7 @@
 #include "collide/parallel/voxel_sort.hpp"
 
-#include "collide/search/survey.hpp"
-#include "collide/search/wide.hpp"
+#include "collide/problem/survey.hpp"
+#include "collide/problem/wide.hpp"
 #include "runtime/core/uninitialised.hpp"
 
 #include <algorithm>
@@ -24,7 +24,7 @@ void VoxelSort::clear() {
 
 template <class IsWanted>
 void VoxelSort::spread(std::span<const Aabb> boxes, const VoxelGrid& grid,
-                       serial::CellNumbers& numbers, const IsWanted& is_wanted) {
+                       search::CellNumbers& numbers, const IsWanted& is_wanted) {
   using Corners = search::Corners<3>;
   const Corners corners(numbers.strides());
   const bool is_dense = numbers.is_dense();
@@ -72,7 +72,7 @@ void VoxelSort::sort_level(const Plan& plan, const ObjectList& objects, Level le
   };
   const auto is_native = [&](std::uint32_t i) { return one_level || level_of(i) == level; };
   const auto is_visitor = [&](std::uint32_t i) { return level_of(i) < level; };
-  serial::CellNumbers numbers(grid.cells_of(objects.bounds()), static_cast<double>(boxes.size()));
+  search::CellNumbers numbers(grid.cells_of(objects.bounds()), static_cast<double>(boxes.size()));
 
   Sorted& sorted = levels_.emplace_back();
   sorted.begin = n_entries_;

@@ -3,9 +3,9 @@
 
 #include "collide/parallel/object_list.hpp"
 #include "collide/parallel/plan.hpp"
-#include "collide/search/entry.hpp"
-#include "collide/search/scratch.hpp"
-#include "collide/serial/cell_numbers.hpp"
+#include "collide/problem/cell_numbers.hpp"
+#include "collide/problem/entry.hpp"
+#include "collide/problem/scratch.hpp"
 #include "runtime/core/ids.hpp"
 #include "runtime/core/index.hpp"
 
@@ -54,7 +54,7 @@ class VoxelSort {
   void sort_level(const Plan& plan, const ObjectList& objects, Level level);
   /// Writes the numbers of the cells that objects touch, and their entries.
   template <class IsWanted>
-  void spread(std::span<const Aabb> boxes, const VoxelGrid& grid, serial::CellNumbers& numbers,
+  void spread(std::span<const Aabb> boxes, const VoxelGrid& grid, search::CellNumbers& numbers,
               const IsWanted& is_wanted);
   void note_models(const ObjectList& objects);
 

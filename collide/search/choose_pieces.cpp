@@ -1,8 +1,8 @@
 #include "collide/search/choose_pieces.hpp"
 
-#include "collide/search/choose_grid.hpp"
-#include "collide/search/costs.hpp"
-#include "collide/search/survey.hpp"
+#include "collide/problem/choose_grid.hpp"
+#include "collide/problem/costs.hpp"
+#include "collide/problem/survey.hpp"
 
 #include <algorithm>
 #include <array>
@@ -16,7 +16,7 @@ namespace {
 /// whole set.
 template <class Real>
 struct Sample {
-  Sample(const ObjectsWithCapsules<Real>& set, double scale) {
+  Sample(const ThinSet<Real>& set, double scale) {
     const std::size_t n = set.boxes.size();
     const double n_meant = scale * static_cast<double>(n);
     const auto wanted = static_cast<std::size_t>(std::ceil(2 * std::sqrt(n_meant)));
@@ -67,7 +67,7 @@ struct Overlaps {
 template <class Real>
 Overlaps overlaps(const Sample<Real>& a, std::uint32_t i, const Sample<Real>& b, std::uint32_t j,
                   double longest) {
-  std::array<Box<Real, 3>, most_pieces> of_a, of_b;
+  BoxesOfPieces<Real> of_a, of_b;
   const auto* const end_a =
       cut(a.boxes[i], a.capsules[i], n_pieces(a.capsules[i], longest), of_a.data());
   const auto* const end_b =
@@ -94,17 +94,14 @@ std::optional<double> choose_pieces(ThinSets<Real> sets, const PairOptions& opti
   if (!a.are_valid || !b.are_valid) return {};
   SampledPairs sampled;
   const detail::PairSink sink{&sampled, &SampledPairs::call};
-  const std::span<const Box<Real, 3>> boxes_a(a.boxes), boxes_b(b.boxes);
+  const std::array<ThinSet<Real>, 2> samples{{{a.boxes}, {b.boxes}}};
   std::vector<std::uint32_t> models;
   if (by_model)
     for (const std::uint32_t object : a.objects) models.push_back(options.models[object]);
   const PairOptions of_sample{.touching = options.touching,
                               .models = models,
                               .within_model = by_model ? WithinModel::skip : WithinModel::test};
-  if (sets.size() == 2)
-    detail::search_pairs(boxes_a, boxes_b, of_sample, sink);
-  else
-    detail::search_pairs(boxes_a, of_sample, sink);
+  detail::search_pairs(ThinSets<Real>(samples).first(sets.size()), of_sample, sink);
   const auto& [in_a, in_b] = sampled;
   constexpr std::size_t few = 16, most_measured = 32;
   if (in_a.size() < few) return {};

@@ -2,13 +2,15 @@
 // should be: by expected cost, from a sample.
 #pragma once
 
-#include "collide/search/thin_objects.hpp"
+#include "collide/problem/thin_objects.hpp"
+
+#include <optional>
 
 namespace tess::collide::search {
 
 /// One set with itself, or two sets.
 template <class Real>
-using ThinSets = std::span<const ObjectsWithCapsules<Real>>;
+using ThinSets = std::span<const ThinSet<Real>>;
 
 /// The longest extent of a piece, or ThinObjects::whole; nothing if the capsules do not pay. As if
 /// there were `scale` objects for each.

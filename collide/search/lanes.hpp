@@ -6,10 +6,10 @@
 #pragma once
 
 #include "collide/box.hpp"
-#include "collide/search/entry.hpp"
+#include "collide/problem/entry.hpp"
+#include "collide/problem/scratch.hpp"
+#include "collide/problem/wide.hpp"
 #include "collide/search/pair_buffer.hpp"
-#include "collide/search/scratch.hpp"
-#include "collide/search/wide.hpp"
 #include "runtime/core/algorithm.hpp"
 
 #include <limits>

@@ -3,8 +3,8 @@
 #pragma once
 
 #include "collide/pairs.hpp"
-#include "collide/search/scratch.hpp"
-#include "collide/search/wide.hpp"
+#include "collide/problem/scratch.hpp"
+#include "collide/problem/wide.hpp"
 
 namespace tess::collide::search {
 

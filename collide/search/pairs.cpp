@@ -1,10 +1,11 @@
 // A search for pairs: it chooses which sets are compared, on one level or on several.
 #include "collide/pairs.hpp"
 
-#include "collide/search/choose_pieces.hpp"
-#include "collide/search/instantiate.hpp"
-#include "collide/search/size_classes.hpp"
-#include "collide/search/survey.hpp"
+#include "collide/problem/instantiate.hpp"
+#include "collide/problem/octaves.hpp"
+#include "collide/problem/size_levels.hpp"
+#include "collide/problem/survey.hpp"
+#include "collide/search/thin_pairs.hpp"
 #include "collide/search/voxel_search.hpp"
 #include "runtime/core/error.hpp"
 
@@ -53,38 +54,36 @@ class Searcher {
     bool swapped = false;                  // a is the second set
     std::optional<Choice<D>> choice = {};  // once it is known
   };
-  /// A problem divided by the sizes of its objects (size_classes.hpp): each class with itself and
-  /// with all smaller ones.
+  /// A problem divided by the sizes of its objects (size_levels.hpp): each level with itself and
+  /// with all levels below.
   struct Levels {
     /// As if there were `scale` objects for each.
     Levels(Searcher& searcher, const SubProblem& whole, double scale)
         : Levels(searcher, whole, scale,
-                 SizeClasses<Real>(
-                     base_of_classes(whole, searcher.search_.chooser()
-                                                .choose(whole.problem, whole.bounds, true, scale)
-                                                .n_cells))) {}
-    Levels(Searcher& searcher, const SubProblem& whole, double scale,
-           const SizeClasses<Real>& classes)
-        : by_class_a(whole.problem.boxes_a, whole.problem.a, classes),
-          by_class_b(whole.problem.boxes_b, whole.problem.b, classes) {
+                 levels_of(whole, searcher.search_.chooser()
+                                      .choose(whole.problem, whole.bounds, true, scale)
+                                      .n_cells)) {}
+    Levels(Searcher& searcher, const SubProblem& whole, double scale, const SizeLevels& levels)
+        : by_level_a(whole.problem.boxes_a, whole.problem.a, levels),
+          by_level_b(whole.problem.boxes_b, whole.problem.b, levels) {
       const Problem<Real, D>& all = whole.problem;
       const auto add = [&](const Problem<Real, D>& problem, bool swapped) {
         if (problem.n_comparisons() == 0) return;
         parts.push_back({problem, bounds_of(problem.boxes_a, problem.a), swapped});
         cost += searcher.cost_of(parts.back(), scale);
       };
-      for (std::size_t c = 0; c < classes.size(); ++c) {
-        const auto a = by_class_a.of(c), b = by_class_b.of(c);
+      for (std::size_t l = 0; l < static_cast<std::size_t>(levels.n()); ++l) {
+        const auto a = by_level_a.of(l), b = by_level_b.of(l);
         if (all.within_a) {
-          add({all.boxes_a, all.boxes_a, a, by_class_a.below(c), true}, false);
+          add({all.boxes_a, all.boxes_a, a, by_level_a.below(l), true}, false);
         } else {
-          add({all.boxes_a, all.boxes_b, a, by_class_b.below(c + 1), false}, false);
-          add({all.boxes_b, all.boxes_a, b, by_class_a.below(c), false}, true);
+          add({all.boxes_a, all.boxes_b, a, by_level_b.below(l + 1), false}, false);
+          add({all.boxes_b, all.boxes_a, b, by_level_a.below(l), false}, true);
         }
       }
     }
 
-    ByClass by_class_a, by_class_b;
+    ByLevel by_level_a, by_level_b;
     std::vector<SubProblem> parts;
     double cost = 0;
   };
@@ -127,13 +126,13 @@ class Searcher {
     SubProblem sample = whole;
     sample.problem.a = a;
     sample.problem.b = b;
-    // Objects of one class are one part, whose cost is another estimate of the same search.
+    // Objects of one level are one part, whose cost is another estimate of the same search.
     const Levels levels(*this, sample, scale);
     return levels.parts.size() > 1 && levels.cost < cost_of(whole);
   }
-  /// The largest size of class 0: the voxel that would be chosen if all objects were points, or the
-  /// smallest object.
-  static Real base_of_classes(const SubProblem& whole, const CellAt<D>& cells_of_points) {
+  /// Level 0 has the octaves up to that of the voxel that would be chosen if all objects were
+  /// points, or of the smallest object.
+  static SizeLevels levels_of(const SubProblem& whole, const CellAt<D>& cells_of_points) {
     Real smallest = std::numeric_limits<Real>::infinity(), voxel = smallest;
     for (const Entry entry : whole.problem.a)
       smallest = std::min(smallest, longest_extent(whole.problem.boxes_a[object_of(entry)]));
@@ -143,7 +142,9 @@ class Searcher {
       if (cells_of_points[k] > 1)
         voxel = std::min(voxel, (whole.bounds.hi[k] - whole.bounds.lo[k]) /
                                     static_cast<Real>(cells_of_points[k]));
-    return std::max(std::isfinite(voxel) ? voxel : Real{0}, smallest);
+    const Real most = std::max(std::isfinite(voxel) ? voxel : Real{0}, smallest);
+    const double next_octave{size_of_octave<Real>(octave_of(most) + 1)};
+    return SizeLevels(std::nextafter(next_octave, 0.0));
   }
 
   void check_memory(const SubProblem& whole, const TheBox& bounds) const {
@@ -176,24 +177,35 @@ class Searcher {
   VoxelSearch<Real, D> search_;
 };
 
-void check_voxel_size(const PairOptions& options) {
+/// Throws Error for what is no search, whatever the boxes are.
+template <class TheBox>
+void check(std::span<const ObjectSet<TheBox>> sets, const PairOptions& options) {
+  const bool is_one_set = sets.size() == 1, by_model = divides(options);
+  const std::size_t n_models = options.models.size(), n = sets.front().boxes.size();
+  if (by_model && !is_one_set)
+    fail(ErrorCode::bad_value, "pairs: ", n_models,
+         " models for a search across two sets; models divide one set, pass the objects as one");
   if (!std::isfinite(options.voxel_size) || options.voxel_size < 0)
     fail(ErrorCode::bad_value, "pairs: voxel size ", options.voxel_size,
          " is no size; give a positive and finite one, or 0 to have it chosen");
-}
-
-void check_count(std::size_t n) {
-  if (n > most_objects)
-    fail(ErrorCode::bad_value, "pairs: ", n, " objects; the limit of a search is ", most_objects,
-         ": divide the set, or use a collider on several processes");
+  for (const ObjectSet<TheBox>& set : sets)
+    if (set.boxes.size() > most_objects)
+      fail(ErrorCode::bad_value, "pairs: ", set.boxes.size(), " objects; the limit of a search is ",
+           most_objects, ": divide the set, or use a collider on several processes");
+  if (!by_model && options.within_model == WithinModel::skip && is_one_set && n != 0)
+    fail(ErrorCode::bad_value, "pairs: WithinModel::skip without models; give one per object");
+  if (by_model && n_models != n)
+    fail(ErrorCode::bad_value, "pairs: ", n_models, " models for ", n,
+         " objects; give one per object");
 }
 
 /// The objects of a set that take part, and their bounds.
 template <class Real, std::size_t D>
 struct Searched {
   std::vector<Entry> entries;
-  Box<Real, D> bounds;
+  Box<Real, D> bounds = no_box<Real, D>();
 
+  Searched() = default;
   Searched(std::span<const Box<Real, D>> boxes, const PairOptions& options, const char* set) {
     const bool all = options.invalid_boxes == InvalidBoxes::refuse;
     if (all) bounds = checked_bounds(boxes, set);
@@ -223,62 +235,55 @@ Models count(std::span<const std::uint32_t> models) {
   return out;
 }
 
-}  // namespace
-
 template <class Real, std::size_t D>
-void search_pairs(std::span<const Box<Real, D>> boxes, const PairOptions& options, PairSink sink) {
-  check_voxel_size(options);
-  check_count(boxes.size());
-  const bool by_model = divides(options);
-  if (!by_model && options.within_model == WithinModel::skip && !boxes.empty())
-    fail(ErrorCode::bad_value, "pairs: WithinModel::skip without models; give one per object");
-  if (by_model && options.models.size() != boxes.size())
-    fail(ErrorCode::bad_value, "pairs: ", options.models.size(), " models for ", boxes.size(),
-         " objects; give one per object");
-  const Models models = by_model ? count(options.models) : Models{};
+void search_boxes(std::span<const ObjectSet<Box<Real, D>>> sets, const PairOptions& options,
+                  PairSink sink) {
+  check(sets, options);
+  const bool is_one_set = sets.size() == 1;
+  const Models models = divides(options) ? count(options.models) : Models{};
   Searcher<Real, D> searcher(options, models.n > 2, sink);
-  const auto& [entries, bounds] = Searched<Real, D>(boxes, options, "");
-  if (models.n == 1) {
-    if (options.statistics != nullptr) {
-      *options.statistics = {};
-      options.statistics->grid.n_entries = options.statistics->grid.n_left_out = entries.size();
-    }
-  } else if (models.n == 2) {  // which are two sets
-    std::vector<Entry> of_first, of_second;
-    of_first.reserve(entries.size());
-    of_second.reserve(entries.size());
-    for (const Entry entry : entries)
-      (options.models[object_of(entry)] == models.second ? of_second : of_first).push_back(entry);
-    searcher.run(boxes, of_first, boxes, of_second, false, bounds);
-  } else {
-    searcher.run(boxes, entries, {}, {}, true, bounds);
+  const auto boxes_a = sets.front().boxes, boxes_b = sets.back().boxes;
+  Searched<Real, D> a(boxes_a, options, is_one_set ? "" : " of the first set"), b;
+  if (!is_one_set) b = Searched<Real, D>(boxes_b, options, " of the second set");
+  std::size_t n_invalid = boxes_a.size() - a.entries.size();
+  if (!is_one_set) n_invalid += boxes_b.size() - b.entries.size();
+  PairStatistics unused, &statistics = options.statistics != nullptr ? *options.statistics : unused;
+  statistics = {};
+  if (models.n == 2) {  // which are two sets
+    std::vector<Entry> of_first;
+    of_first.reserve(a.entries.size());
+    b.entries.reserve(a.entries.size());
+    for (const Entry entry : a.entries)
+      (options.models[object_of(entry)] == models.second ? b.entries : of_first).push_back(entry);
+    a.entries.swap(of_first);
   }
-  if (options.statistics != nullptr) options.statistics->n_invalid = boxes.size() - entries.size();
+  if (models.n == 1)
+    statistics.grid.n_entries = statistics.grid.n_left_out = a.entries.size();
+  else if (is_one_set && models.n != 2)
+    searcher.run(boxes_a, a.entries, {}, {}, true, a.bounds);
+  else if (!a.entries.empty() && !b.entries.empty())
+    searcher.run(boxes_a, a.entries, boxes_b, b.entries, false, merged(a.bounds, b.bounds));
+  statistics.n_invalid = n_invalid;
 }
 
-template <class Real, std::size_t D>
-void search_pairs(std::span<const Box<Real, D>> a, std::span<const Box<Real, D>> b,
-                  const PairOptions& options, PairSink sink) {
-  if (divides(options))
-    fail(ErrorCode::bad_value, "pairs: ", options.models.size(),
-         " models for a search across two sets; models divide one set, pass the objects as one");
-  check_voxel_size(options);
-  check_count(a.size());
-  check_count(b.size());
-  Searcher<Real, D> searcher(options, false, sink);
-  const Searched<Real, D> of_a(a, options, " of the first set"),
-      of_b(b, options, " of the second set");
-  if (options.statistics != nullptr) *options.statistics = {};
-  if (!of_a.entries.empty() && !of_b.entries.empty())
-    searcher.run(a, of_a.entries, b, of_b.entries, false, merged(of_a.bounds, of_b.bounds));
-  if (options.statistics != nullptr)
-    options.statistics->n_invalid = a.size() + b.size() - of_a.entries.size() - of_b.entries.size();
+}  // namespace
+
+template <class TheBox>
+void search_pairs(std::span<const ObjectSet<TheBox>> sets, const PairOptions& options,
+                  PairSink sink) {
+  if constexpr (std::tuple_size_v<decltype(TheBox::lo)> == 3) {
+    const bool have_capsules =
+        sets.front().capsules.of != nullptr && sets.back().capsules.of != nullptr;
+    if (have_capsules && options.invalid_boxes == InvalidBoxes::refuse)
+      if (const std::optional<double> longest = choose_pieces(sets, options))
+        return search_thin(sets, *longest, options, sink);
+  }
+  search_boxes(sets, options, sink);
 }
 
 #define TESS_INSTANTIATE(Real, D)                                                          \
-  template void search_pairs(std::span<const Box<Real, D>>, const PairOptions&, PairSink); \
-  template void search_pairs(std::span<const Box<Real, D>>, std::span<const Box<Real, D>>, \
-                             const PairOptions&, PairSink);
+  template void search_pairs(std::span<const ObjectSet<Box<Real, D>>>, const PairOptions&, \
+                             PairSink);
 TESS_FOR_EACH_KIND_OF_BOX(TESS_INSTANTIATE)
 #undef TESS_INSTANTIATE
 

@@ -6,7 +6,7 @@
 #pragma once
 
 #include "collide/box.hpp"
-#include "collide/search/entry.hpp"
+#include "collide/problem/entry.hpp"
 
 #include <limits>
 #include <span>

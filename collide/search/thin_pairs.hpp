@@ -1,10 +1,6 @@
-// The pairs of objects that have capsules, if these pay (choose_pieces.hpp).
+// The pairs of objects that have capsules, if these pay (choose_pieces.hpp):
 //
-//     boxes of pieces, or of objects  ->  pairs of boxes  ->  capsules may meet?  ->  first of the pair?
-//
-// Two objects have a common point only if two of their pieces have, so their boxes overlap. If
-// several pairs of their pieces overlap, the first of them passes the pair on: the first in the
-// order of the pieces of the object of the first set, or of the one with the lower position.
+//     boxes of pieces, or of objects  ->  pairs of boxes  ->  pairs of objects (piece_pairs.hpp)
 #pragma once
 
 #include "collide/search/choose_pieces.hpp"

@@ -1,7 +1,7 @@
 #include "collide/search/voxel_search.hpp"
 
-#include "collide/search/costs.hpp"
-#include "collide/search/instantiate.hpp"
+#include "collide/problem/costs.hpp"
+#include "collide/problem/instantiate.hpp"
 
 #include <algorithm>
 

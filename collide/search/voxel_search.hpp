@@ -9,9 +9,9 @@
 #pragma once
 
 #include "collide/pairs.hpp"
-#include "collide/search/choose_grid.hpp"
+#include "collide/problem/choose_grid.hpp"
+#include "collide/problem/scratch.hpp"
 #include "collide/search/lanes.hpp"
-#include "collide/search/scratch.hpp"
 #include "collide/search/slices.hpp"
 
 #include <deque>

@@ -1,7 +1,7 @@
 #include "apps/bench/collide/conversion.hpp"
 
-#include "collide/search/region_grid.hpp"
-#include "collide/serial/conversion.hpp"
+#include "collide/problem/conversion.hpp"
+#include "collide/problem/region_grid.hpp"
 #include "runtime/core/hash.hpp"
 
 #include <algorithm>
@@ -157,7 +157,7 @@ bool by_avx512(const VoxelAxis& axis, Boxes boxes, std::int32_t* index) {
 
 /// The chares' conversion: six coordinates of a box.
 bool by_chares(const VoxelAxis& axis, Boxes boxes, std::int32_t* index) {
-  tess::collide::serial::conversion::Constants grid{};
+  tess::collide::search::conversion::Constants grid{};
   for (std::size_t k = 0; k < 8; ++k) {
     grid.origin[k] = axis.origin;
     grid.per_voxel[k] = 1 / axis.size;
@@ -165,7 +165,7 @@ bool by_chares(const VoxelAxis& axis, Boxes boxes, std::int32_t* index) {
   bool good = true;
   for (std::size_t b = 0; b < boxes.size(); ++b)
     good =
-        tess::collide::serial::conversion::convert(grid, boxes[b].lo.data(), index + 6 * b) && good;
+        tess::collide::search::conversion::convert(grid, boxes[b].lo.data(), index + 6 * b) && good;
   return good;
 }
 

@@ -2,7 +2,7 @@
 #include "collide/collider.hpp"
 #include "collide/pairs.hpp"
 #include "collide/parallel/object_list.hpp"
-#include "collide/search/thin_objects.hpp"
+#include "collide/problem/thin_objects.hpp"
 #include "collide/triangle.hpp"
 #include "runtime/core/error.hpp"
 #include "runtime/core/hash.hpp"

@@ -1,7 +1,7 @@
 // Vector code and loops give the same bits.
 #include "collide/search/lanes.hpp"
 
-#include "collide/search/region_grid.hpp"
+#include "collide/problem/region_grid.hpp"
 #include "tests/support/catch.hpp"
 
 #include <algorithm>

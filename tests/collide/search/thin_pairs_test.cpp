@@ -97,8 +97,7 @@ Pairs found_thin(std::span<const A> a, std::span<const B> b, double longest, boo
   using Real = typename decltype(TheBox::lo)::value_type;
   const auto capsules_a = tess::collide::detail::capsules_of(a),
              capsules_b = tess::collide::detail::capsules_of(b);
-  const std::array<search::ObjectsWithCapsules<Real>, 2> sets{
-      {{boxes_a, capsules_a}, {boxes_b, capsules_b}}};
+  const std::array<search::ThinSet<Real>, 2> sets{{{boxes_a, capsules_a}, {boxes_b, capsules_b}}};
   Pairs asked, out;
   const auto test = [&](std::uint32_t i, std::uint32_t j) {
     const std::uint32_t first = is_one_set ? std::min(i, j) : i,
@@ -297,7 +296,7 @@ TEST_CASE("capsules are not used where they do not pay", "[thin]") {
     const std::span<const Triangle> all(objects);
     const auto boxes = tess::collide::detail::boxes_of(all);
     const auto capsules = tess::collide::detail::capsules_of(all);
-    const search::ObjectsWithCapsules<double> set{boxes, capsules};
+    const search::ThinSet<double> set{boxes, capsules};
     return search::choose_pieces(search::ThinSets<double>(&set, 1), {});
   };
   CHECK_FALSE(choice(triangles(1, {.n = 4000, .length = 0.3, .width = 0.2})));    // not thin

@@ -2,7 +2,7 @@
 // paper is wrong where the table says so.
 #include "apps/bench/collide/conversion.hpp"
 
-#include "collide/search/region_grid.hpp"
+#include "collide/problem/region_grid.hpp"
 #include "runtime/core/hash.hpp"
 #include "tests/support/catch.hpp"
 

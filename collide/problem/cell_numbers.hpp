@@ -6,7 +6,7 @@
 #pragma once
 
 #include "collide/hit.hpp"
-#include "collide/serial/voxel_grid.hpp"
+#include "collide/problem/voxel_grid.hpp"
 #include "runtime/core/algorithm.hpp"
 
 #include <array>
@@ -14,7 +14,7 @@
 #include <limits>
 #include <vector>
 
-namespace tess::collide::serial {
+namespace tess::collide::search {
 
 /// The cells that the box of an item touches. Throws Error with the item if its box is not valid,
 /// or if a coordinate exceeds the range of cell indices.
@@ -94,4 +94,4 @@ class CellNumbers {
   std::vector<Cell> cells_;           // by number, unless dense
 };
 
-}  // namespace tess::collide::serial
+}  // namespace tess::collide::search

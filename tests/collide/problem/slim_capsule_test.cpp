@@ -1,5 +1,5 @@
 // Pairs of capsules at a known distance.
-#include "collide/search/slim_capsule.hpp"
+#include "collide/problem/slim_capsule.hpp"
 
 #include "runtime/core/hash.hpp"
 #include "tests/support/catch.hpp"

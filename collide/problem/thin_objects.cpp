@@ -1,4 +1,4 @@
-#include "collide/search/thin_objects.hpp"
+#include "collide/problem/thin_objects.hpp"
 
 #include <cmath>
 
@@ -65,9 +65,9 @@ Box<Real, 3>* cut(const Box<Real, 3>& box, const Capsule& capsule, int n,
 }
 
 template <class Real>
-ThinObjects<Real>::ThinObjects(const ObjectsWithCapsules<Real>& objects, const Frame& frame,
-                               double longest)
-    : objects_(objects.boxes) {
+ThinObjects<Real>::ThinObjects(const ThinSet<Real>& objects, const Frame& frame, double longest,
+                               std::uint64_t first_number)
+    : objects_(objects.boxes), first_number_(first_number) {
   const std::size_t n = objects_.size();
   capsules_.resize(n);
   if (longest == whole) {
@@ -81,16 +81,16 @@ ThinObjects<Real>::ThinObjects(const ObjectsWithCapsules<Real>& objects, const F
     capsules_.data()[i] = slim(capsule, frame);
     begins_.data()[i] = static_cast<std::uint32_t>(end);
     pieces_.resize(end + most_pieces);
-    owners_.resize(end + most_pieces);
+    objects_of_.resize(end + most_pieces);
     Box<Real, 3>* const boxes = pieces_.data() + end;
     const auto n_boxes = static_cast<std::size_t>(
         cut(objects_[i], capsule, n_pieces(capsule, longest), boxes) - boxes);
-    std::fill_n(owners_.data() + end, n_boxes, static_cast<std::uint32_t>(i));
+    std::fill_n(objects_of_.data() + end, n_boxes, static_cast<std::uint32_t>(i));
     end += n_boxes;
   }
   begins_.data()[n] = static_cast<std::uint32_t>(end);
   pieces_.resize(end);
-  owners_.resize(end);
+  objects_of_.resize(end);
 }
 
 template class ThinObjects<float>;

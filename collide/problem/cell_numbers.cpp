@@ -1,6 +1,6 @@
-#include "collide/serial/cell_numbers.hpp"
+#include "collide/problem/cell_numbers.hpp"
 
-namespace tess::collide::serial {
+namespace tess::collide::search {
 
 CellNumbers::CellNumbers(const CellRange& range, double n_used) : low_(range.lo) {
   if (range.n_cells() <= 2 * n_used + 64) {
@@ -27,4 +27,4 @@ void CellNumbers::grow() {
   for (std::uint32_t i = 0; i < cells_.size(); ++i) find(cells_[i]) = i;
 }
 
-}  // namespace tess::collide::serial
+}  // namespace tess::collide::search

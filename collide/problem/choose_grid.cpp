@@ -1,8 +1,8 @@
-#include "collide/search/choose_grid.hpp"
+#include "collide/problem/choose_grid.hpp"
 
-#include "collide/search/costs.hpp"
-#include "collide/search/instantiate.hpp"
-#include "collide/search/wide.hpp"
+#include "collide/problem/costs.hpp"
+#include "collide/problem/instantiate.hpp"
+#include "collide/problem/wide.hpp"
 
 #include <algorithm>
 #include <cmath>

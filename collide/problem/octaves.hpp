@@ -1,16 +1,32 @@
-// The sizes of objects: a bit per octave of their longest extents (search/survey.hpp).
+// The sizes of objects by their octaves: the powers of two at or below their longest extents.
 #pragma once
 
-#include "collide/search/survey.hpp"
-
 #include <array>
+#include <bit>
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
 
-namespace tess::collide {
+namespace tess::collide::search {
 
+/// The power of two at or below a size; 0 for zero and the smallest ones.
+[[nodiscard]] inline std::uint32_t octave_of(float size) noexcept {
+  return std::bit_cast<std::uint32_t>(size) >> 23 & 0xFFU;
+}
+[[nodiscard]] inline std::uint32_t octave_of(double size) noexcept {
+  return static_cast<std::uint32_t>(std::bit_cast<std::uint64_t>(size) >> 52 & 0x7FFU);
+}
+/// The size at which an octave begins.
+template <class Real>
+[[nodiscard]] Real size_of_octave(std::uint32_t octave) noexcept {
+  constexpr int bias = sizeof(Real) == sizeof(float) ? 127 : 1023;
+  return std::ldexp(Real{1}, static_cast<int>(octave) - bias);
+}
+
+/// A set of octaves of doubles, a bit for each.
 class Octaves {
  public:
-  static constexpr std::uint32_t n = search::n_octaves<double>;
+  static constexpr std::uint32_t n = 2048;
 
   Octaves() = default;
   /// All octaves up to this one.
@@ -48,4 +64,4 @@ class Octaves {
   std::array<std::uint64_t, n / 64> words_{};
 };
 
-}  // namespace tess::collide
+}  // namespace tess::collide::search

@@ -1,4 +1,4 @@
-#include "collide/search/slim_capsule.hpp"
+#include "collide/problem/slim_capsule.hpp"
 
 #include "runtime/core/simd.hpp"
 

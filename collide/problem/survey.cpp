@@ -1,6 +1,6 @@
-#include "collide/search/survey.hpp"
+#include "collide/problem/survey.hpp"
 
-#include "collide/search/instantiate.hpp"
+#include "collide/problem/instantiate.hpp"
 #include "runtime/core/error.hpp"
 #include "runtime/core/simd.hpp"
 

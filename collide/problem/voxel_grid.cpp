@@ -1,4 +1,4 @@
-#include "collide/serial/voxel_grid.hpp"
+#include "collide/problem/voxel_grid.hpp"
 
 #include "runtime/core/error.hpp"
 

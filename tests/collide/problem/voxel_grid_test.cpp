@@ -1,8 +1,8 @@
 // The grid of the parallel collision: coordinates to cells, and the errors of bad ones.
-#include "collide/serial/voxel_grid.hpp"
+#include "collide/problem/voxel_grid.hpp"
 
 #include "collide/hit.hpp"
-#include "collide/serial/cell_numbers.hpp"
+#include "collide/problem/cell_numbers.hpp"
 #include "runtime/core/error.hpp"
 #include "tests/support/catch.hpp"
 
@@ -15,7 +15,7 @@ using namespace tess;
 using namespace tess::collide;
 
 TEST_CASE("the conversions of all widths agree bit for bit, also on invalid boxes", "[collide]") {
-  namespace conversion = serial::conversion;
+  namespace conversion = search::conversion;
   const std::vector forms {
     &conversion::convert,
 #ifdef __AVX2__
@@ -89,7 +89,7 @@ TEST_CASE("errors name bad boxes, coordinates and voxel sizes", "[collide]") {
   };
   for (const Aabb& box :
        {Aabb{{0, nan, 0}, {1, 1, 1}}, Aabb{{0, 0, 0}, {inf, 1, 1}}, Aabb{{2, 0, 0}, {1, 1, 1}}})
-    REQUIRE_THROWS_WITH(serial::cells_of(item(box), VoxelGrid(1)),
+    REQUIRE_THROWS_WITH(search::cells_of(item(box), VoxelGrid(1)),
                         Contains("object 42 of owner [7]"));
   REQUIRE_THROWS_WITH(VoxelGrid(1).cell_of({1, -3e9, 0}), Contains("-3e+09"));
   REQUIRE_THROWS_AS(VoxelGrid(1).cell_of({nan, 0, 0}), Error);

@@ -4,12 +4,12 @@
 //
 //     x <= y  =>  cell(x) <= cell(y)
 //
-// The proof in search/entry.hpp needs only this, so rounding cannot lose a pair. Public libraries
+// The proof in problem/entry.hpp needs only this, so rounding cannot lose a pair. Public libraries
 // that lose 15 % of the pairs use a second formula, k * size + origin, which rounds differently.
 #pragma once
 
 #include "collide/box.hpp"
-#include "collide/serial/conversion.hpp"
+#include "collide/problem/conversion.hpp"
 
 #include <compare>
 #include <cstdint>
@@ -70,10 +70,10 @@ class VoxelGrid {
   /// indices.
   [[nodiscard]] bool find_cells(const Aabb& box, CellRange& range) const noexcept {
     static_assert(sizeof box == 6 * sizeof(double) && sizeof range == 6 * sizeof(std::int32_t));
-    return serial::conversion::convert(constants_, box.lo.data(), &range.lo.x);
+    return search::conversion::convert(constants_, box.lo.data(), &range.lo.x);
   }
   /// The input of the conversion.
-  [[nodiscard]] const serial::conversion::Constants& constants() const noexcept {
+  [[nodiscard]] const search::conversion::Constants& constants() const noexcept {
     return constants_;
   }
 
@@ -83,7 +83,7 @@ class VoxelGrid {
   Point origin_;
   Point size_;
   Point per_voxel_;
-  serial::conversion::Constants constants_{};
+  search::conversion::Constants constants_{};
 };
 
 }  // namespace tess::collide

@@ -12,7 +12,7 @@
 #include <immintrin.h>
 #endif
 
-namespace tess::collide::serial::conversion {
+namespace tess::collide::search::conversion {
 
 /// The grid for the lanes x y z x y z; the last two lanes are unused.
 struct Constants {
@@ -89,4 +89,4 @@ inline constexpr double least_index = -2147483648.0, largest_index = 2147483647.
 #endif
 }
 
-}  // namespace tess::collide::serial::conversion
+}  // namespace tess::collide::search::conversion
