@@ -10,8 +10,8 @@ namespace {
 struct End {
   CollectionId id{};
   /// It has ended by another call: this one waits for the same coroutines.
-  std::uint64_t drop(Pe& pe, Counted&& counted) const {
-    pe.await_ending(id, std::move(counted));
+  std::uint64_t drop(Pe& pe) const {
+    pe.await_ending(id, Counted::sent(pe.completion(), pe.context().epoch));
     return 0;
   }
 };
@@ -29,14 +29,12 @@ void ending_arrives(Collection& collection, End&& /*m*/, Counted counted) {
   if (collection.n_local() != 0) pe.keep_ending(std::move(ending), std::move(counted));
 }
 
-/// On each PE, whether the collection is known there already, or has ended by another call.
-void end_arrives(Pe& pe, End&& m, Counted /*counted*/) {
-  send_to_collection<&ending_arrives>(pe, m.id, pe.id(), m);
-}
-
 void knocking_arrives(Collection& /*collection*/, Knock&& /*m*/, Counted /*counted*/) {}
-void knock_arrives(Pe& pe, Knock&& m, Counted /*counted*/) {
-  send_to_collection<&knocking_arrives>(pe, m.id, pe.id(), m);
+
+/// On each PE: a message to the collection, which may not be known there yet, or may have ended.
+template <auto Handler>
+void pass_on(Pe& pe, typename HandlerType<decltype(Handler)>::Payload&& m, Counted /*counted*/) {
+  send_to_collection<Handler>(pe, m.id, pe.id(), m);
 }
 
 void freeing_arrives(Pe& pe, Free&& m) {
@@ -48,12 +46,12 @@ void freeing_arrives(Pe& pe, Free&& m) {
 void end_collection(CollectionId id) {
   if (id == CollectionId{}) refuse_empty_proxy("destroy() of");
   Pe& pe = current_pe();
-  send_to_all<&end_arrives>(pe, {id});
+  send_to_all<&pass_on<&ending_arrives>>(pe, {id});
 }
 
 void wait_everywhere(CollectionId id) {
   if (id == CollectionId{}) refuse_empty_proxy("co_await of");
-  send_to_all<&knock_arrives>(current_pe(), {id});
+  send_to_all<&pass_on<&knocking_arrives>>(current_pe(), {id});
 }
 
 bool in_running_program() {
