@@ -149,7 +149,7 @@ class ArrayProxy : public detail::WholeHandle<ArrayProxy<C>>, public Broadcasts<
 
   /// True if the array was destroyed and this PE has freed its part, or does so once the waiting
   /// coroutines of its elements are done.
-  [[nodiscard]] bool ended() const { return current_pe().ended(id_); }
+  [[nodiscard]] bool ended() const { return current_pe().collections().ended(id_); }
 
   /// How many elements of the array were destroyed on this PE so far, and the last one in words: for
   /// libraries whose plans are about elements.

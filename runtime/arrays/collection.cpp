@@ -71,7 +71,8 @@ Collection::Collection(Pe& pe, CollectionId id, std::string name, const Range& r
       reductions_(reduction_host_, pe.completion(), pe.id(), root(), pe.n_pes(),
                   {this->name() + ": reduction",
                    [this](std::uint32_t number) { return elements_before(number); }}) {
-  for (const std::uint32_t round : pe.take_early_joins(id)) reductions_.add_member(round);
+  for (const std::uint32_t round : pe.collections().take_early_joins(id))
+    reductions_.add_member(round);
 }
 
 Collection::~Collection() = default;
@@ -145,7 +146,7 @@ void Collection::unlist(Element& element) {
   if (watcher_ != nullptr) [[unlikely]]
     watcher_->left(element);
   if (element.balance_) [[unlikely]]  // it may go on to another PE of this process
-    pe_.forget(element.balance_->load);
+    pe_.measuring().forget(element.balance_->load);
   if (applying_ != 0) {  // a loop over the slots runs: it must neither miss nor repeat an element
     elements_[element.slot_] = nullptr;
     return;
@@ -188,8 +189,8 @@ void Collection::deliver(Partial& result, EpochId epoch, std::string_view of) {
   try {
     result.complete(pe_);
   } catch (...) {
-    pe_.note_place(text("at the end of a reduction of ", of, name()));
-    pe_.keep_exception(std::current_exception());
+    pe_.error().note_place(text("at the end of a reduction of ", of, name()));
+    pe_.error().keep(std::current_exception());
     throw;
   }
 }
@@ -201,7 +202,7 @@ void Collection::call(Element& element, const NumberedCall& call) {
   try {
     call.call->invoke(element);
   } catch (...) {
-    pe_.note_place();
+    pe_.error().note_place();
     throw;
   }
 }
@@ -242,7 +243,7 @@ std::uint32_t join_at(Pe& pe, CollectionId id, RoundId round, std::string elemen
   if (Collection* const known = find_collection(pe, id)) {
     known->reductions().join(number, std::move(element));
   } else {
-    pe.keep_early_join(id, number);
+    pe.collections().keep_early_join(id, number);
   }
   return number + 1;
 }
@@ -331,18 +332,18 @@ BalanceRecord& Collection::make_record(Element& element) {
 
 void Collection::pack_record(const Element& element, Writer& ar) {
   ar(element.balance_ != nullptr);
-  if (element.balance_) element.balance_->pack(ar, current_pe().start_meter());
+  if (element.balance_) element.balance_->pack(ar, current_pe().measuring().start_meter());
 }
 
 void Collection::unpack_record(Element& element, Reader& ar) {
-  if (ar.take<bool>()) make_record(element).unpack(ar, current_pe().start_meter());
+  if (ar.take<bool>()) make_record(element).unpack(ar, current_pe().measuring().start_meter());
 }
 
 void Collection::drop_record(Pe& pe, Reader& ar) {
   (void)ar.take<ElementState>();
   if (!ar.take<bool>()) return;
   BalanceRecord record;
-  record.unpack(ar, pe.start_meter());
+  record.unpack(ar, pe.measuring().start_meter());
   (void)take_wait(pe, record, SyncPhase::runs);
 }
 
@@ -448,7 +449,7 @@ void ElementScope::force_migration() {
   if (!element_.collection_->migratable()) return;
   const Collection& of = *element_.collection_;
   const std::uint64_t key = mix(of.id().value) ^ of.key_of(element_);
-  const PeId to = pe_.forced_migration({element_, key, pe_.id(), context_.action});
+  const PeId to = pe_.forced_migrations().next({element_, key, pe_.id(), context_.action});
   if (to != pe_.id() && element_.migrate_to_.value < 0) element_.migrate_to_ = to;
 }
 
@@ -457,7 +458,7 @@ Collection& add_collection(Pe& pe, const CollectionKind& kind, CollectionId id, 
   auto made = kind.make(pe, id, range);
   Collection& collection = *made;
   collection.set_index_map(map);
-  pe.add(std::move(made));
+  pe.collections().add(std::move(made));
   return collection;
 }
 
@@ -468,10 +469,11 @@ void refuse_empty_proxy(std::string_view use) {
 
 void refuse_absent(CollectionId id, std::string_view what, std::string_view or_else) {
   if (id == CollectionId{}) refuse_empty_proxy("a use of");
-  const Pe& pe = current_pe();
-  const std::string why = pe.ended(id) ? text(what, " was destroyed on ", pe.id())
-                                       : text(what, " is not known yet on ", pe.id(),
-                                              ": create it inside an awaited epoch", or_else);
+  Pe& pe = current_pe();
+  const std::string why = pe.collections().ended(id)
+                              ? text(what, " was destroyed on ", pe.id())
+                              : text(what, " is not known yet on ", pe.id(),
+                                     ": create it inside an awaited epoch", or_else);
   check_failed("the proxy's elements are known here", __FILE__, __LINE__, why);
 }
 

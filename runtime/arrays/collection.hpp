@@ -387,7 +387,7 @@ class ElementScope {
 
 /// The part of a collection on this PE; null if it is not known yet, or has ended.
 [[nodiscard]] inline Collection* find_collection(Pe& pe, CollectionId id) {
-  return static_cast<Collection*>(pe.find(id));
+  return static_cast<Collection*>(pe.collections().find(id));
 }
 /// Makes the part on this PE of a collection of this kind; its initial elements are still to come.
 Collection& add_collection(Pe& pe, const CollectionKind& kind, CollectionId id, const Range& range,
@@ -401,8 +401,8 @@ Collection& add_collection(Pe& pe, const CollectionKind& kind, CollectionId id, 
 /// ended, or it is not known here yet, for which `or_else` is another remedy.
 [[noreturn]] void refuse_absent(CollectionId id, std::string_view what, std::string_view or_else);
 /// The collection whose element is under construction; null if there is none.
-[[nodiscard]] inline Collection* constructing_collection(const Pe& pe) {
-  return static_cast<Collection*>(pe.constructing_collection());
+[[nodiscard]] inline Collection* constructing_collection(Pe& pe) {
+  return static_cast<Collection*>(pe.nesting().constructing_collection());
 }
 
 }  // namespace tess::detail

@@ -29,7 +29,7 @@ struct CollectionAction {
     auto* message = static_cast<Held*>(envelope);
     Collection* collection = find_collection(pe, message->payload.collection);
     if (collection == nullptr) {
-      pe.keep_early(message->payload.collection, envelope, &drop);
+      pe.collections().keep_early(message->payload.collection, envelope, &drop);
       return;
     }
     Payload payload = std::move(message->payload.payload);

@@ -11,7 +11,7 @@ struct End {
   CollectionId id{};
   /// It has ended by another call: this one waits for the same coroutines.
   std::uint64_t drop(Pe& pe) const {
-    pe.await_ending(id, Counted::sent(pe.completion(), pe.context().epoch));
+    pe.collections().await_ending(id, Counted::sent(pe.completion(), pe.context().epoch));
     return 0;
   }
 };
@@ -24,9 +24,10 @@ struct Free {
 
 void ending_arrives(Collection& collection, End&& /*m*/, Counted counted) {
   Pe& pe = collection.pe();
-  std::unique_ptr<HostedCollection> ending = pe.take_out(collection.id());
+  std::unique_ptr<HostedCollection> ending = pe.collections().take_out(collection.id());
   collection.end();
-  if (collection.n_local() != 0) pe.keep_ending(std::move(ending), std::move(counted));
+  if (collection.n_local() != 0)
+    pe.collections().keep_ending(std::move(ending), std::move(counted));
 }
 
 void knocking_arrives(Collection& /*collection*/, Knock&& /*m*/, Counted /*counted*/) {}
@@ -38,7 +39,7 @@ void pass_on(Pe& pe, typename HandlerType<decltype(Handler)>::Payload&& m, Count
 }
 
 void freeing_arrives(Pe& pe, Free&& m) {
-  const Pe::Ending ending = pe.take_ending(m.id);  // frees it at the end of this function
+  const auto ending = pe.collections().take_ending(m.id);  // frees it at the end of this function
 }
 
 }  // namespace

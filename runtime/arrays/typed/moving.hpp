@@ -55,7 +55,7 @@ void ArrayOf<Index>::ship(Indexed& element, PeId to, Memberships&& memberships) 
 
 template <class Index>
 auto ArrayOf<Index>::construct_again(const Index& index) -> Indexed* {
-  const Pe::Construction construction(pe_, &index, this);
+  const Nesting::Construction construction(pe_.nesting(), &index, this);
   Indexed* const element = construct_default();
   // The first construction has already done what the constructor asks for.
   drop_after_construction();

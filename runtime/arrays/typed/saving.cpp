@@ -49,7 +49,7 @@ void Collection::save(Writer& ar, const std::function<void()>& written) {
   for (Element* element : elements_) {
     ar(element->state_.version.incarnation);
     if (element->balance_)
-      ar(SavedKind::balanced, element->balance_->to_save(pe_.start_meter()));
+      ar(SavedKind::balanced, element->balance_->to_save(pe_.measuring().start_meter()));
     else
       ar(SavedKind::alive);
     try {

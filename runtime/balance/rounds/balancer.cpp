@@ -82,7 +82,7 @@ void Balancer::attach(Collection& array) {
   } else {
     barrier_.attach(array);
   }
-  Meter& meter = current_pe().start_meter();
+  Meter& meter = current_pe().measuring().start_meter();
   if (plan_.when == BalanceWhen::periodic)
     meter.add_alarm(meter.ticks(1e-9 * static_cast<double>(plan_.period_ns)), this,
                     [this] { alarm(); });
@@ -111,7 +111,7 @@ void Balancer::group_ends() {
 }
 
 void Balancer::detach() {
-  current_pe().start_meter().remove_alarms(this);
+  current_pe().measuring().start_meter().remove_alarms(this);
   measured_.detach();
   barrier_.detach();
   if (array_ != nullptr) array_->remove_watcher();
@@ -477,7 +477,8 @@ void Balancer::alarm() {
 GroupProxy<Balancer> start(CollectionId array, const BalanceOptions& options, Strategy users) {
   if (array == CollectionId{}) detail::refuse_empty_proxy("start_balancing() of");
   Pe& pe = current_pe();
-  TESS_CHECK(!pe.ended(array), "start_balancing() of an array that was destroyed on ", pe.id());
+  TESS_CHECK(!pe.collections().ended(array), "start_balancing() of an array that was destroyed on ",
+             pe.id());
   validate(options, pe.n_pes(), users ? StrategyOf::user : StrategyOf::runtime);
   const bool passes =
       options.when == BalanceWhen::periodic ||
