@@ -218,7 +218,7 @@ struct Awakening final : TypedMessage<Awakening<C>, C, std::tuple<>> {
   using Base::Base;
 
   static void invoke(Element& element, ElementMessage<Index>& /*message*/) {
-    if (Collection::awake(element)) (void)static_cast<C&>(element).resume_from_sync();
+    if (BalancedElements::awake(element)) (void)static_cast<C&>(element).resume_from_sync();
   }
   static inline const ElementAction<Index> entry{std::type_identity<Awakening>{},
                                                  &Awakening::invoke, nullptr, Traffic::control};
