@@ -60,7 +60,7 @@ constexpr LateMessages late_messages_of() {
 
 template <class C, class... Args>
 CreateArray<C, std::decay_t<Args>...> new_array(Pe& pe, const Range& range, Args&&... args) {
-  return {pe.new_collection_id(late_messages_of<C>()), range, {std::forward<Args>(args)...}};
+  return {pe.collections().new_id(late_messages_of<C>()), range, {std::forward<Args>(args)...}};
 }
 
 template <class C, class... Args>

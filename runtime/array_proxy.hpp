@@ -16,6 +16,12 @@ namespace tess {
 
 namespace detail {
 
+/// The body of an epoch that ends once the collection is known on every PE.
+struct WaitEverywhere {
+  CollectionId id;
+  void operator()() const { wait_everywhere(id); }
+};
+
 /// What a handle of a whole collection is, its number. `Self` is the class that derives from it.
 template <class Self>
 class WholeHandle {
@@ -34,9 +40,7 @@ class WholeHandle {
     return Deed([id = id_] { end_collection(id); });
   }
   /// `co_await handle` continues once the collection is known on every PE; it gives the handle.
-  [[nodiscard]] auto operator co_await() const {
-    return Known(static_cast<const Self&>(*this), id_);
-  }
+  [[nodiscard]] auto operator co_await() const { return Known(static_cast<const Self&>(*this)); }
 
   [[nodiscard]] std::size_t hash() const { return std::hash<CollectionId>()(id_); }
   friend auto operator<=>(const WholeHandle&, const WholeHandle&) = default;
@@ -49,12 +53,10 @@ class WholeHandle {
   CollectionId id_{};
 
  private:
-  class Known : public EpochBase {
+  class Known : public EpochAwait<WaitEverywhere> {
    public:
-    Known(const Self& handle, CollectionId id) : handle_(handle), id_(id) {}
-    void await_suspend(Task::Handle task) {
-      suspend_until_done(task, [](EpochBase& of) { wait_everywhere(static_cast<Known&>(of).id_); });
-    }
+    explicit Known(const Self& handle)
+        : EpochAwait<WaitEverywhere>({handle.id()}), handle_(handle) {}
     [[nodiscard]] Self await_resume() const {
       EpochBase::await_resume();
       return handle_;
@@ -62,7 +64,6 @@ class WholeHandle {
 
    private:
     Self handle_;
-    CollectionId id_;
   };
 };
 
@@ -148,7 +149,7 @@ class ArrayProxy : public detail::WholeHandle<ArrayProxy<C>>, public Broadcasts<
 
   /// True if the array was destroyed and this PE has freed its part, or does so once the waiting
   /// coroutines of its elements are done.
-  [[nodiscard]] bool ended() const { return current_pe().ended(id_); }
+  [[nodiscard]] bool ended() const { return current_pe().collections().ended(id_); }
 
   /// How many elements of the array were destroyed on this PE so far, and the last one in words: for
   /// libraries whose plans are about elements.

@@ -14,7 +14,7 @@ AskBase::AskBase(AskBase&& other) noexcept
   TESS_CHECK(other.waiting_ == nullptr, "an ask is moved while a coroutine waits for it");
   if (id_ == 0) return;
   require_here();
-  pe_->move_future(id_, this);
+  pe_->futures().move(id_, this);
 }
 
 void AskBase::await_suspend(Task::Handle task) {
@@ -31,7 +31,7 @@ void AskBase::wait(Waiter& waiter) {
 }
 
 AskBase* AskBase::take(Pe& pe, std::uint64_t id) {
-  auto* ask = static_cast<AskBase*>(pe.find_future(id));
+  auto* ask = static_cast<AskBase*>(pe.futures().find(id));
   if (ask == nullptr) ++pe.statistics().late_replies;
   return ask;
 }
@@ -48,7 +48,7 @@ void AskBase::set_deadline(Time limit) {
   limit_ = limit;
   if (timer_ != 0) pe_->timers().cancel(timer_);
   timer_ = pe_->timers().after(limit, [pe = pe_, id = id_] {
-    if (auto* ask = static_cast<AskBase*>(pe->find_future(id)); ask != nullptr) ask->expire();
+    if (auto* ask = static_cast<AskBase*>(pe->futures().find(id)); ask != nullptr) ask->expire();
   });
 }
 
@@ -74,7 +74,7 @@ void AskBase::leave() {
     if (here == nullptr || here->stopped()) return;  // the run is over
     require_here();
   }
-  if (id_ != 0) pe_->leave_future(std::exchange(id_, 0));
+  if (id_ != 0) pe_->futures().leave(std::exchange(id_, 0));
   if (timer_ != 0) pe_->timers().cancel(std::exchange(timer_, 0));
 }
 

@@ -48,7 +48,7 @@ struct Failure {
 /// The part of an ask that does not depend on the type of the reply. It stays on its PE.
 class AskBase {
  public:
-  AskBase() : pe_(&current_pe()), id_(pe_->enter_future(this)) {}
+  AskBase() : pe_(&current_pe()), id_(pe_->futures().enter(this)) {}
   AskBase(const AskBase&) = delete;
   AskBase& operator=(const AskBase&) = delete;
   AskBase& operator=(AskBase&&) = delete;

@@ -142,12 +142,11 @@ class ElementProxy : public Sends<ElementProxy<C, IndexType>> {
   }
   template <auto F, class Of, class Message>
   void demand_and_post(Pe& pe, detail::How<Of> how, Message* message) const {
-    using detail::Creates, detail::Demand;
-    constexpr Creates creates = detail::entry_rule<C, F>.creates;
-    if constexpr (creates != Creates::no) {
+    using detail::Demand;
+    constexpr Demand by_entry = detail::entry_rule<C, F>.demand;
+    if constexpr (by_entry != Demand::none) {
       static_assert(check_on_demand());
-      if (how.demand == Demand::none)
-        how.demand = creates == Creates::here ? Demand::here : Demand::home;
+      if (how.demand == Demand::none) how.demand = by_entry;
     }
     message->demand = how.demand;
     message->ask = how.demand == Demand::here;
@@ -163,9 +162,7 @@ class ElementProxy : public Sends<ElementProxy<C, IndexType>> {
   template <class Arguments>
   void weigh(Pe& pe, const Arguments& arguments) const {
     if constexpr (!detail::OnePerPe<C>)  // a balancer does not move members of groups
-      if (detail::Meter* meter = pe.meter(); meter != nullptr && meter->weighs_messages())
-          [[unlikely]]
-        meter->sent({collection_, IndexHash<Index>()(index_)}, detail::payload_bytes(arguments));
+      detail::weigh(pe, collection_, index_, arguments);
   }
   /// Calls the entry method inside the caller's. Returns false, and takes no argument, if it must
   /// be queued.
@@ -190,14 +187,7 @@ class ElementProxy : public Sends<ElementProxy<C, IndexType>> {
   }
   void post_message(Pe& pe, detail::ElementMessage<Index>* message) const {
     check_receiver();
-    detail::Counted::departs(pe.completion(), message->epoch);
-    if (detail::Collection* collection = detail::find_collection(pe, collection_);
-        collection != nullptr) [[likely]] {
-      static_cast<detail::Array<C>*>(collection)->post_counted(message);
-    } else {
-      check_not_empty();
-      pe.send_here(message);  // it waits until the array is known here
-    }
+    detail::post_new(pe, message, [this] { check_not_empty(); });
   }
   template <class... Args>
   void construct(PeId where, detail::Demand demand, std::uint32_t joins, Args&&... args) const {

@@ -18,12 +18,12 @@ std::string FutureBase::describe(std::span<const std::byte> name) {
 
 Pe& FutureBase::sends_to(const Where& to) {
   Pe& here = current_pe();
-  if (to.pe.value >= here.n_pes()) (void)here.require_future(0);
+  if (to.pe.value >= here.n_pes()) (void)here.futures().require(0);
   return here;
 }
 
 FutureBase::Slot& FutureBase::find(Pe& pe, std::uint64_t id, std::string_view value) {
-  auto* const slot = static_cast<Slot*>(pe.require_future(id));
+  auto* const slot = static_cast<Slot*>(pe.futures().require(id));
   TESS_CHECK(!slot->given, text_of(value), " was given two results: it takes one");
   return *slot;
 }
@@ -31,7 +31,7 @@ FutureBase::Slot& FutureBase::find(Pe& pe, std::uint64_t id, std::string_view va
 void FutureBase::given(Pe& pe, Slot& slot) {
   slot.given = true;
   Waiter* const waiter = slot.waiting;
-  pe.leave_future(slot.id);
+  pe.futures().leave(slot.id);
   slot.id.store(0, std::memory_order_release);  // read by is_expected()
   if (waiter != nullptr) waiter->wake();
 }
@@ -59,7 +59,7 @@ void FutureBase::enter() const {
   if (slot_ == nullptr) slot_ = make_();
   if (!is_expected()) {
     pe_ = &current_pe();
-    slot_->id = pe_->enter_future(slot_.get());
+    slot_->id = pe_->futures().enter(slot_.get());
   }
   require_here();
 }
@@ -76,7 +76,7 @@ void FutureBase::leave() {
     if (here == nullptr || here->stopped()) return;  // the run is over
     require_here();
   }
-  pe_->leave_future(slot_->id);
+  pe_->futures().leave(slot_->id);
 }
 
 void FutureBase::take(FutureBase& other) {

@@ -39,13 +39,13 @@ namespace tess {
 /// before. So only the difference of two calls has a meaning. Time in which another thread used the
 /// core is subtracted, to about a millisecond; on the simulated machine the clock is virtual.
 [[nodiscard]] inline Time busy_time() {
-  const detail::Meter& meter = current_pe().start_meter();
+  const detail::Meter& meter = current_pe().measuring().start_meter();
   return std::chrono::round<Time>(std::chrono::duration<double>(meter.seconds(meter.busy())));
 }
 /// The number of arrays and groups that this PE knows: those that were created and have not been
 /// freed by destroy() here.
 [[nodiscard]] inline std::size_t n_collections() {
-  return current_pe().collections().size();
+  return current_pe().collections().all().size();
 }
 
 }  // namespace tess

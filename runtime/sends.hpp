@@ -183,11 +183,8 @@ class Sends {
 
   /// Gives the same receiver for messages with a priority, or for messages that create their element.
   [[nodiscard]] With<Self, Priority> with(Priority priority) const { return {self(), {priority}}; }
-  [[nodiscard]] With<Self, detail::OfEntry> with(CreateHere /*where*/) const {
-    return {self(), {{}, detail::Demand::here}};
-  }
-  [[nodiscard]] With<Self, detail::OfEntry> with(CreateHome /*where*/) const {
-    return {self(), {{}, detail::Demand::home}};
+  [[nodiscard]] With<Self, detail::OfEntry> with(detail::CreatesWhere auto where) const {
+    return {self(), {{}, where.demand}};
   }
   /// A target for results: entry method F of the receiver.
   template <auto F>
@@ -268,13 +265,17 @@ class With : public To::template Verbs<With<To, Of>> {
   [[nodiscard]] With<To, Priority> with(Priority priority) const {
     return {to_, {priority, how_.demand}};
   }
-  [[nodiscard]] With with(CreateHere /*where*/) const { return demand(detail::Demand::here); }
-  [[nodiscard]] With with(CreateHome /*where*/) const { return demand(detail::Demand::home); }
+  [[nodiscard]] With with(detail::CreatesWhere auto where) const {
+    static_assert(detail::ProxyAccess::check_on_demand<To>());
+    return {to_, {how_.of, where.demand}};
+  }
 
   friend bool operator==(const With&, const With&) = default;
   [[nodiscard]] std::size_t hash() const {
-    return static_cast<std::size_t>(
-        mix(to_.hash() ^ (static_cast<std::uint64_t>(how_.demand) << 56U)));
+    std::uint64_t how = static_cast<std::uint64_t>(how_.demand) << 56U;
+    if constexpr (std::is_same_v<Of, Priority>)
+      how ^= mix(static_cast<std::uint64_t>(how_.of.value));
+    return static_cast<std::size_t>(mix(to_.hash() ^ how));
   }
   template <class Ar>
   void serialize(Ar& ar) {
@@ -284,10 +285,6 @@ class With : public To::template Verbs<With<To, Of>> {
  private:
   friend detail::ProxyAccess;
 
-  [[nodiscard]] With demand(detail::Demand demand) const {
-    static_assert(detail::ProxyAccess::check_on_demand<To>());
-    return {to_, {how_.of, demand}};
-  }
   [[nodiscard]] detail::How<Of> how() const { return how_; }
   void check_receiver() const { detail::ProxyAccess::check_receiver(to_); }
   template <auto F, class... Args>

@@ -47,7 +47,7 @@ void resume(Task::Handle task) {
     pe.context().epoch = context.epoch;
     pe.context().led_by = context.led_by;
     pe.context().led_in = context.led_in;
-    const WatchedMain watched(pe.watch(), pe.running());
+    const WatchedMain watched(pe.measuring().watch(), pe.running());
     task.resume();
     return;
   }
@@ -144,7 +144,7 @@ void TaskPromise::Final::await_suspend(TaskHandle self) noexcept {
     const std::exception_ptr thrown = promise.error;
     Pe& pe = *promise.account.pe;
     self.destroy();
-    if (thrown) pe.keep_exception(thrown);
+    if (thrown) pe.error().keep(thrown);
   }
 }
 
@@ -159,7 +159,7 @@ AnyTask::~AnyTask() {
     }
     return;
   }
-  if (promise.error) promise.account.pe->keep_exception(promise.error);
+  if (promise.error) promise.account.pe->error().keep(promise.error);
   handle_.destroy();
 }
 

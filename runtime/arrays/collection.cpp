@@ -71,7 +71,8 @@ Collection::Collection(Pe& pe, CollectionId id, std::string name, const Range& r
       reductions_(reduction_host_, pe.completion(), pe.id(), root(), pe.n_pes(),
                   {this->name() + ": reduction",
                    [this](std::uint32_t number) { return elements_before(number); }}) {
-  for (const std::uint32_t round : pe.take_early_joins(id)) reductions_.add_member(round);
+  for (const std::uint32_t round : pe.collections().take_early_joins(id))
+    reductions_.add_member(round);
 }
 
 Collection::~Collection() = default;
@@ -130,11 +131,7 @@ void Collection::list(Element& element) {
     ++n_new_;
     postpone(element);
   }
-  if (watcher_ != nullptr) [[unlikely]] {
-    watcher_->entered(element);
-  } else if (element.balance_) [[unlikely]] {
-    element.balance_->load.since = LoadRecord::Since::somewhere;  // this PE does not measure yet
-  }
+  balanced_.listed(element);
 }
 
 void Collection::unlist(Element& element) {
@@ -142,10 +139,7 @@ void Collection::unlist(Element& element) {
   reductions_.leave(element.state_.next_reduction);
   if (element.state_.created_after != 0) [[unlikely]]
     --n_new_;
-  if (watcher_ != nullptr) [[unlikely]]
-    watcher_->left(element);
-  if (element.balance_) [[unlikely]]  // it may go on to another PE of this process
-    pe_.forget(element.balance_->load);
+  balanced_.unlisted(element);
   if (applying_ != 0) {  // a loop over the slots runs: it must neither miss nor repeat an element
     elements_[element.slot_] = nullptr;
     return;
@@ -188,8 +182,8 @@ void Collection::deliver(Partial& result, EpochId epoch, std::string_view of) {
   try {
     result.complete(pe_);
   } catch (...) {
-    pe_.note_place(text("at the end of a reduction of ", of, name()));
-    pe_.keep_exception(std::current_exception());
+    pe_.error().note_place(text("at the end of a reduction of ", of, name()));
+    pe_.error().keep(std::current_exception());
     throw;
   }
 }
@@ -201,7 +195,7 @@ void Collection::call(Element& element, const NumberedCall& call) {
   try {
     call.call->invoke(element);
   } catch (...) {
-    pe_.note_place();
+    pe_.error().note_place();
     throw;
   }
 }
@@ -242,7 +236,7 @@ std::uint32_t join_at(Pe& pe, CollectionId id, RoundId round, std::string elemen
   if (Collection* const known = find_collection(pe, id)) {
     known->reductions().join(number, std::move(element));
   } else {
-    pe.keep_early_join(id, number);
+    pe.collections().keep_early_join(id, number);
   }
   return number + 1;
 }
@@ -316,79 +310,20 @@ void Collection::describe_waiting(std::vector<std::string>& lines) const {
   reductions_.describe_waiting(lines);
   if (second_tree_ != nullptr) second_tree_->describe_waiting(lines);
   if (sections_) sections_->describe_waiting(lines);
-  if (watcher_ != nullptr) return;
-  for (const Element* element : elements_)
-    if (element != nullptr && element->balance_ &&
-        element->balance_->sync.phase == SyncPhase::waits)
-      lines.push_back(element_text(*element) +
-                      " waits at at_sync(), but its array has no balancer: start_balancing(array)");
-}
-
-BalanceRecord& Collection::make_record(Element& element) {
-  if (!element.balance_) element.balance_.reset(new BalanceRecord);
-  return *element.balance_;
-}
-
-void Collection::pack_record(const Element& element, Writer& ar) {
-  ar(element.balance_ != nullptr);
-  if (element.balance_) element.balance_->pack(ar, current_pe().start_meter());
-}
-
-void Collection::unpack_record(Element& element, Reader& ar) {
-  if (ar.take<bool>()) make_record(element).unpack(ar, current_pe().start_meter());
-}
-
-void Collection::drop_record(Pe& pe, Reader& ar) {
-  (void)ar.take<ElementState>();
-  if (!ar.take<bool>()) return;
-  BalanceRecord record;
-  record.unpack(ar, pe.start_meter());
-  (void)take_wait(pe, record, SyncPhase::runs);
-}
-
-void Collection::end_wait(Pe& pe, const Element& element) {
-  if (element.balance_) (void)take_wait(pe, *element.balance_, SyncPhase::runs);
-}
-
-Counted Collection::take_wait(Pe& pe, BalanceRecord& record, SyncPhase next) {
-  if (record.sync.phase != SyncPhase::waits) return {};
-  record.sync.phase = next;
-  return {pe.completion(), record.sync.epoch};
-}
-
-Counted Collection::continue_wait(const Element& element, Envelope& message,
-                                  std::uint32_t& led_by) {
-  message.epoch = element.balance_->sync.epoch;
-  led_by = element.balance_->sync.led_by;
-  return take_wait(pe_, *element.balance_, SyncPhase::resumes);
-}
-
-bool Collection::known(const BalanceRecord& record) {
-  return record.sync.entry != SyncEntry::none;
-}
-
-void Collection::note_unwatched_end(const Element& element) {
-  if (known(element)) unwatched_ends_.push_back(element.balance_->sync.next);
+  balanced_.describe_waiting(elements_, lines);
 }
 
 LoadRecord* ElementScope::load_of(const Element& element) {
   return element.balance_ ? &element.balance_->load : nullptr;
 }
 
-bool Collection::awake(Element& element) {
-  if (!element.balance_ || element.balance_->sync.phase != SyncPhase::resumes) return false;
-  element.balance_->sync.phase = SyncPhase::runs;
-  return true;
-}
-
 void Collection::end() {
   ended_ = true;
   if (sections_) sections_->end_all();
-  if (watcher_ != nullptr) watcher_->collection_ends();
-  watcher_ = nullptr;
+  balanced_.collection_ends();
   for (Element* element : elements_) {
     if (element->n_suspended_ != 0) element->destroy_requested_ = true;
-    end_wait(pe_, *element);
+    BalancedElements::end_wait(pe_, *element);
   }
   broadcasts_.end();
   reductions_.end();
@@ -399,13 +334,7 @@ void Collection::end() {
 void Collection::at_sync(Element& element) {
   if (ended_) return;  // no round resumes it: it ends once its coroutine is done
   require_not_destroyed(element, " calls at_sync() in its destructor, and nothing resumes it");
-  SyncState& sync = make_record(element).sync;
-  TESS_CHECK(sync.phase == SyncPhase::runs, element_text(element),
-             " calls at_sync() again before it was resumed");
-  sync.phase = SyncPhase::waits;
-  sync.epoch = Counted::departs(pe_.completion(), pe_.context().epoch);  // it may migrate meanwhile
-  sync.led_by = pe_.context().led_by;
-  if (watcher_ != nullptr) watcher_->at_sync(element);
+  balanced_.at_sync(element);
 }
 
 void Collection::move(Element& element, PeId to) {
@@ -448,7 +377,7 @@ void ElementScope::force_migration() {
   if (!element_.collection_->migratable()) return;
   const Collection& of = *element_.collection_;
   const std::uint64_t key = mix(of.id().value) ^ of.key_of(element_);
-  const PeId to = pe_.forced_migration({element_, key, pe_.id(), context_.action});
+  const PeId to = pe_.forced_migrations().next({element_, key, pe_.id(), context_.action});
   if (to != pe_.id() && element_.migrate_to_.value < 0) element_.migrate_to_ = to;
 }
 
@@ -457,7 +386,7 @@ Collection& add_collection(Pe& pe, const CollectionKind& kind, CollectionId id, 
   auto made = kind.make(pe, id, range);
   Collection& collection = *made;
   collection.set_index_map(map);
-  pe.add(std::move(made));
+  pe.collections().add(std::move(made));
   return collection;
 }
 
@@ -468,10 +397,11 @@ void refuse_empty_proxy(std::string_view use) {
 
 void refuse_absent(CollectionId id, std::string_view what, std::string_view or_else) {
   if (id == CollectionId{}) refuse_empty_proxy("a use of");
-  const Pe& pe = current_pe();
-  const std::string why = pe.ended(id) ? text(what, " was destroyed on ", pe.id())
-                                       : text(what, " is not known yet on ", pe.id(),
-                                              ": create it inside an awaited epoch", or_else);
+  Pe& pe = current_pe();
+  const std::string why = pe.collections().ended(id)
+                              ? text(what, " was destroyed on ", pe.id())
+                              : text(what, " is not known yet on ", pe.id(),
+                                     ": create it inside an awaited epoch", or_else);
   check_failed("the proxy's elements are known here", __FILE__, __LINE__, why);
 }
 

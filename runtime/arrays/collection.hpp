@@ -2,6 +2,7 @@
 // reductions. ArrayOf and Array add what depends on the types of index and chare.
 #pragma once
 
+#include "runtime/arrays/balanced_elements.hpp"
 #include "runtime/arrays/collection_hosts.hpp"
 #include "runtime/arrays/collection_kind.hpp"
 #include "runtime/arrays/elements/element.hpp"
@@ -20,7 +21,6 @@
 namespace tess::detail {
 
 struct LoadRecord;
-enum class SyncPhase : std::uint8_t;
 class IndexMap;
 class KeptScans;
 class Sections;
@@ -29,25 +29,6 @@ class Sections;
 [[nodiscard]] inline PeId root_of(CollectionId id, std::int32_t n_pes) {
   return PeId{static_cast<std::int32_t>(mix(id.value) % static_cast<std::uint64_t>(n_pes))};
 }
-
-/// Observes the elements of a collection on one PE.
-class ElementWatcher {
- public:
-  ElementWatcher() = default;
-  ElementWatcher(const ElementWatcher&) = delete;
-  ElementWatcher& operator=(const ElementWatcher&) = delete;
-  virtual ~ElementWatcher() = default;
-
-  /// The element is listed here from now on: it was created here or arrived from another PE.
-  virtual void entered(Element& element) = 0;
-  /// The element is no longer listed here.
-  virtual void left(Element& element) = 0;
-  /// The element is destroyed; called after left().
-  virtual void destroyed(Element& element) = 0;
-  virtual void at_sync(Element& element) = 0;
-  /// The collection ends on this PE. Its elements are still listed; no calls follow.
-  virtual void collection_ends() = 0;
-};
 
 class Collection : public HostedCollection {
  public:
@@ -127,43 +108,8 @@ class Collection : public HostedCollection {
     return context.led_in == collection ? context.led_by : 0;
   }
 
-  // For the balancer.
-
-  /// The observer of elements that come and go here; null if there is none.
-  [[nodiscard]] ElementWatcher* watcher() const { return watcher_; }
-  void set_watcher(ElementWatcher& watcher) { watcher_ = &watcher; }
-  void remove_watcher() { watcher_ = nullptr; }
-  /// The balancer's record of an element; null unless requested.
-  [[nodiscard]] static BalanceRecord* record_of(const Element& element) {
-    return element.balance_.get();
-  }
-  static BalanceRecord& make_record(Element& element);
-  /// A migrating element takes its record along, if it has one.
-  static void pack_record(const Element& element, Writer& ar);
-  static void unpack_record(Element& element, Reader& ar);
-  /// The element of this state arrives after the end of its collection: releases the epoch of its
-  /// wait at a barrier.
-  static void drop_record(Pe& pe, Reader& ar);
-  /// Gives the message that resumes the element the epoch and the broadcast of its wait. The wait is
-  /// over once the message is sent.
-  [[nodiscard]] Counted continue_wait(const Element& element, Envelope& message,
-                                      std::uint32_t& led_by);
-  /// True if the element has not migrated yet.
-  [[nodiscard]] static bool never_moved(const Element& element) {
-    return element.state_.version.epoch <= 1;
-  }
-  /// True if only the element's constructor has run, here or elsewhere.
-  [[nodiscard]] static bool never_ran(const Element& element) {
-    return never_moved(element) && !element.has_run_;
-  }
-  /// Migrations from this PE minus those to it, of elements that no barrier knows. The sum over all
-  /// PEs is the number of such elements under way.
-  [[nodiscard]] std::int64_t n_away() const { return n_away_; }
-  /// The next rounds of the members of the barrier that were destroyed here before there was an
-  /// observer.
-  [[nodiscard]] std::vector<std::uint32_t> take_unwatched_ends() {
-    return std::exchange(unwatched_ends_, {});
-  }
+  /// What a balancer needs of the elements here.
+  [[nodiscard]] BalancedElements& balanced() { return balanced_; }
   /// The element stays here, as if a coroutine of it waited, until it is released; settle() follows.
   static void hold(Element& element) {
     ++element.n_suspended_;
@@ -181,9 +127,6 @@ class Collection : public HostedCollection {
   }
   /// The element waits until its balancer resumes it.
   void at_sync(Element& element);
-  /// The message of resume() has arrived. Returns false if it was sent to an earlier incarnation of
-  /// the element; then the wait of this one, if it waits, goes on.
-  [[nodiscard]] static bool awake(Element& element);
   /// Lets the element migrate once none of its code runs or waits. The current epoch waits for the
   /// migration, unless a waiting coroutine delays it.
   void move(Element& element, PeId to);
@@ -280,12 +223,6 @@ class Collection : public HostedCollection {
   [[nodiscard]] virtual PeId home_of_saved(Reader ar) const = 0;
   void list(Element& element);
   void unlist(Element& element);
-  void count_departure(const Element& element) { n_away_ += known(element) ? 0 : 1; }
-  void count_arrival(const Element& element) { n_away_ -= known(element) ? 0 : 1; }
-  /// An element is destroyed that no observer sees.
-  void note_unwatched_end(const Element& element);
-  /// Releases the epoch of an element that waits at its balancer's barrier and is being destroyed.
-  static void end_wait(Pe& pe, const Element& element);
   /// Runs the calls that constructors have requested.
   void run_after_construction();
   [[nodiscard]] bool has_after_construction() const { return !after_construction_.empty(); }
@@ -305,13 +242,6 @@ class Collection : public HostedCollection {
   std::uint64_t n_destroyed_ = 0;
 
  private:
-  /// True if a barrier has seen the element.
-  [[nodiscard]] static bool known(const Element& element) {
-    return element.balance_ && known(*element.balance_);
-  }
-  [[nodiscard]] static bool known(const BalanceRecord& record);
-  /// The wait of this element at its barrier, if it waits, which it does no longer.
-  [[nodiscard]] static Counted take_wait(Pe& pe, BalanceRecord& record, SyncPhase next);
   void postpone(Element& element);
   /// True if this is the first contribution of an element that was inserted without the name of a
   /// round, and nothing tells that it joined at the round for which the program means the value.
@@ -327,9 +257,7 @@ class Collection : public HostedCollection {
   std::shared_ptr<const IndexMap> index_map_;
   std::vector<Element*> elements_;
   std::vector<std::function<void()>> after_construction_;
-  std::int64_t n_away_ = 0;
-  std::vector<std::uint32_t> unwatched_ends_;
-  ElementWatcher* watcher_ = nullptr;
+  BalancedElements balanced_{pe_};
   ReductionTree* second_tree_ = nullptr;
   std::size_t n_new_ = 0;  // local elements that have not contributed since their construction
   unsigned applying_ = 0;
@@ -387,7 +315,7 @@ class ElementScope {
 
 /// The part of a collection on this PE; null if it is not known yet, or has ended.
 [[nodiscard]] inline Collection* find_collection(Pe& pe, CollectionId id) {
-  return static_cast<Collection*>(pe.find(id));
+  return static_cast<Collection*>(pe.collections().find(id));
 }
 /// Makes the part on this PE of a collection of this kind; its initial elements are still to come.
 Collection& add_collection(Pe& pe, const CollectionKind& kind, CollectionId id, const Range& range,
@@ -401,8 +329,8 @@ Collection& add_collection(Pe& pe, const CollectionKind& kind, CollectionId id, 
 /// ended, or it is not known here yet, for which `or_else` is another remedy.
 [[noreturn]] void refuse_absent(CollectionId id, std::string_view what, std::string_view or_else);
 /// The collection whose element is under construction; null if there is none.
-[[nodiscard]] inline Collection* constructing_collection(const Pe& pe) {
-  return static_cast<Collection*>(pe.constructing_collection());
+[[nodiscard]] inline Collection* constructing_collection(Pe& pe) {
+  return static_cast<Collection*>(pe.nesting().constructing_collection());
 }
 
 }  // namespace tess::detail

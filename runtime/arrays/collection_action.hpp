@@ -29,7 +29,7 @@ struct CollectionAction {
     auto* message = static_cast<Held*>(envelope);
     Collection* collection = find_collection(pe, message->payload.collection);
     if (collection == nullptr) {
-      pe.keep_early(message->payload.collection, envelope, &drop);
+      pe.collections().keep_early(message->payload.collection, envelope, &drop);
       return;
     }
     Payload payload = std::move(message->payload.payload);
@@ -38,14 +38,12 @@ struct CollectionAction {
     Of::template call<Handler>(pe, epoch, static_cast<typename Of::Receiver&>(*collection),
                                std::move(payload));
   }
-  /// The collection has ended. A payload may have more to do then; it returns the number of user
-  /// messages that are lost.
+  /// The collection has ended. A payload may have more to do then, in the epoch of its message; it
+  /// returns the number of user messages that are lost.
   static std::uint64_t drop(Pe& pe, Envelope& envelope) {
-    Counted counted(pe.completion(), Of::counts ? envelope.epoch : EpochId{});
+    const Counted counted(pe.completion(), Of::counts ? envelope.epoch : EpochId{});
     const Payload& payload = static_cast<Held&>(envelope).payload.payload;
-    if constexpr (requires { payload.drop(pe, std::move(counted)); }) {
-      return payload.drop(pe, std::move(counted));
-    } else if constexpr (requires { payload.drop(pe); }) {
+    if constexpr (requires { payload.drop(pe); }) {
       return payload.drop(pe);
     } else {
       return 0;

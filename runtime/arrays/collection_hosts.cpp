@@ -65,7 +65,7 @@ void BroadcastHostOfCollection::send(PeId to, const BroadcastDrop& drop) {
 }
 
 void BroadcastHostOfCollection::flush() {
-  collection_.pe().flush();
+  collection_.pe().exchange().flush();
 }
 
 void BroadcastHostOfCollection::apply(const NumberedCall& call) {

@@ -20,7 +20,7 @@ void pack_named(Element& element, Collection::PackElement pack, Writer& ar) {
     Context writes = pe.context();
     writes.element = &element;
     Context* const before = pe.enter(&writes);
-    pe.note_place();
+    pe.error().note_place();
     pe.enter(before);
     throw;
   }

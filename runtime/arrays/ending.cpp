@@ -10,8 +10,8 @@ namespace {
 struct End {
   CollectionId id{};
   /// It has ended by another call: this one waits for the same coroutines.
-  std::uint64_t drop(Pe& pe, Counted&& counted) const {
-    pe.await_ending(id, std::move(counted));
+  std::uint64_t drop(Pe& pe) const {
+    pe.collections().await_ending(id, Counted::sent(pe.completion(), pe.context().epoch));
     return 0;
   }
 };
@@ -24,23 +24,22 @@ struct Free {
 
 void ending_arrives(Collection& collection, End&& /*m*/, Counted counted) {
   Pe& pe = collection.pe();
-  std::unique_ptr<HostedCollection> ending = pe.take_out(collection.id());
+  std::unique_ptr<HostedCollection> ending = pe.collections().take_out(collection.id());
   collection.end();
-  if (collection.n_local() != 0) pe.keep_ending(std::move(ending), std::move(counted));
-}
-
-/// On each PE, whether the collection is known there already, or has ended by another call.
-void end_arrives(Pe& pe, End&& m, Counted /*counted*/) {
-  send_to_collection<&ending_arrives>(pe, m.id, pe.id(), m);
+  if (collection.n_local() != 0)
+    pe.collections().keep_ending(std::move(ending), std::move(counted));
 }
 
 void knocking_arrives(Collection& /*collection*/, Knock&& /*m*/, Counted /*counted*/) {}
-void knock_arrives(Pe& pe, Knock&& m, Counted /*counted*/) {
-  send_to_collection<&knocking_arrives>(pe, m.id, pe.id(), m);
+
+/// On each PE: a message to the collection, which may not be known there yet, or may have ended.
+template <auto Handler>
+void pass_on(Pe& pe, typename HandlerType<decltype(Handler)>::Payload&& m, Counted /*counted*/) {
+  send_to_collection<Handler>(pe, m.id, pe.id(), m);
 }
 
 void freeing_arrives(Pe& pe, Free&& m) {
-  const Pe::Ending ending = pe.take_ending(m.id);  // frees it at the end of this function
+  const auto ending = pe.collections().take_ending(m.id);  // frees it at the end of this function
 }
 
 }  // namespace
@@ -48,12 +47,12 @@ void freeing_arrives(Pe& pe, Free&& m) {
 void end_collection(CollectionId id) {
   if (id == CollectionId{}) refuse_empty_proxy("destroy() of");
   Pe& pe = current_pe();
-  send_to_all<&end_arrives>(pe, {id});
+  send_to_all<&pass_on<&ending_arrives>>(pe, {id});
 }
 
 void wait_everywhere(CollectionId id) {
   if (id == CollectionId{}) refuse_empty_proxy("co_await of");
-  send_to_all<&knock_arrives>(current_pe(), {id});
+  send_to_all<&pass_on<&knocking_arrives>>(current_pe(), {id});
 }
 
 bool in_running_program() {

@@ -2,7 +2,7 @@
 //
 // On each PE the end is a separate message, so no code of the collection runs meanwhile. The
 // collection leaves the PE's table at once: messages that arrive later are dropped, and their
-// epochs are settled (Pe::keep_early). An end that overtakes the creation waits for it. Elements
+// epochs are settled (HostedCollections::keep_early). An end that overtakes the creation waits for it. Elements
 // without a waiting coroutine are destroyed immediately. Once the last other element is destroyed
 // the collection is freed, and this PE's part of the end is done.
 #pragma once

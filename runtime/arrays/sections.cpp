@@ -194,7 +194,7 @@ void Sections::call(Element& element, const SectionCall& call) {
   try {
     what.invoke(element);
   } catch (...) {
-    pe.note_place();
+    pe.error().note_place();
     throw;
   }
 }

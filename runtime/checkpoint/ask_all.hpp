@@ -43,10 +43,10 @@ template <class Does>
   try {
     does();
   } catch (const std::exception& error) {  // also of serialize(), which is the user's
-    current_pe().forget_place();
+    current_pe().error().forget_place();
     return error.what();
   } catch (...) {
-    current_pe().forget_place();
+    current_pe().error().forget_place();
     return "an exception that is not a std::exception";
   }
   return {};
@@ -70,13 +70,13 @@ class AskAll {
   AskAll(const AskAll&) = delete;
   AskAll& operator=(const AskAll&) = delete;
   ~AskAll() {
-    if (id_ != 0) pe_.leave_future(id_);
+    if (id_ != 0) pe_.futures().leave(id_);
   }
 
   [[nodiscard]] bool await_ready() const noexcept { return false; }
   void await_suspend(Task::Handle task) {
     task_ = task;
-    id_ = pe_.enter_future(this);
+    id_ = pe_.futures().enter(this);
     n_left_ = asked_.size();
     answers_.resize(static_cast<std::size_t>(pe_.n_pes()));
     suspend(task, [] { return std::string("the answers of all PEs about a checkpoint"); });
@@ -130,7 +130,7 @@ class AskAll {
     send_system<&AskAll::answered>(pe, m.from, Answered{m.id, m.asked, Then(pe, m.middle)});
   }
   static void answered(Pe& pe, Answered&& m) {
-    auto* const all = static_cast<AskAll*>(pe.find_future(m.id));
+    auto* const all = static_cast<AskAll*>(pe.futures().find(m.id));
     if (all == nullptr) return;  // the run ends, and the coroutine was freed
     all->answers_[static_cast<std::size_t>(m.from.value)] = std::move(m.answer);
     if (--all->n_left_ == 0) resume_later(all->task_);

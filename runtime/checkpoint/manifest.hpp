@@ -33,7 +33,7 @@ struct MainPart {
   std::vector<SavedCollection> collections;
   std::vector<CollectionNumbers::Made> numbers;  ///< by PE; behind them of PEs that restarts lost
   std::vector<SectionId> sections;
-  std::uint32_t places_of_futures = 0;  ///< the greatest Pe::places_of_futures()
+  std::uint32_t places_of_futures = 0;  ///< the greatest FutureTable::n_places()
   std::uint64_t timers = 0;             ///< the greatest Timers::n_made()
   std::string state_type;
   std::vector<std::byte> state;  ///< the main coroutine's

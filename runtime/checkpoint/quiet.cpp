@@ -13,12 +13,12 @@ Thaw thaw_here(Pe& pe, const Thaw& done) {
 }
 
 Quiet::~Quiet() {
-  if (id_ != 0) pe_.leave_future(id_);
+  if (id_ != 0) pe_.futures().leave(id_);
 }
 
 void Quiet::await_suspend(Task::Handle task) {
   task_ = task;
-  id_ = pe_.enter_future(this);
+  id_ = pe_.futures().enter(this);
   suspend(task, [] { return std::string("the end of all messages, for a checkpoint"); });
   hold_.emplace(pe_.completion());
   ask();
@@ -44,7 +44,7 @@ void Quiet::asked(Pe& pe, Asked&& m) {
 }
 
 void Quiet::answered(Pe& pe, Answered&& m) {
-  if (auto* const quiet = static_cast<Quiet*>(pe.find_future(m.id)); quiet != nullptr)
+  if (auto* const quiet = static_cast<Quiet*>(pe.futures().find(m.id)); quiet != nullptr)
     quiet->take(m);
 }
 

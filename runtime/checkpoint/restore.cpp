@@ -23,10 +23,10 @@ struct Nothing {
 /// The collections of a run that is to be restored, or that it has had: there should be none.
 std::vector<std::string> existing(Pe& pe, const Nothing& /*nothing*/) {
   std::vector<std::string> names;
-  for (const HostedCollection* hosted : pe.collections())
+  for (const HostedCollection* hosted : pe.collections().all())
     if (static_cast<const Collection*>(hosted)->kind().saving != Saving::skipped)
       names.push_back(hosted->name());
-  if (names.empty() && pe.collection_numbers().made() != CollectionNumbers::Made{})
+  if (names.empty() && pe.collections().numbers().made() != CollectionNumbers::Made{})
     names.emplace_back("an array, group or section that has ended");
   return names;
 }
@@ -144,16 +144,16 @@ struct CreateQuestion {
 };
 Nothing create_here(Pe& pe, const CreateQuestion& question) {
   // What constructors of restored elements make has no number of the saved run.
-  pe.begin_futures_behind(question.places_of_futures);
+  pe.futures().begin_behind(question.places_of_futures);
   pe.timers().begin_behind(question.timers);
   if (const auto here = static_cast<std::size_t>(pe.id().value); here < question.numbers.size())
-    pe.collection_numbers().continue_after(question.numbers[here]);
+    pe.collections().numbers().continue_after(question.numbers[here]);
   for (const SavedCollection& saved : question.collections) {
     const CollectionKind& kind = *CollectionKind::find(saved.key);
     const bool group = kind.members != CollectionKind::Members::of_array;
     auto made = kind.make(pe, saved.id, group ? range(pe.n_pes()) : saved.range);
     made->set_index_map(from_saved(saved.map));
-    pe.add(std::move(made));
+    pe.collections().add(std::move(made));
   }
   return {};
 }
@@ -202,7 +202,7 @@ Nothing finish_here(Pe& pe, const FinishQuestion& question) {
         if (const CollectionId one = again.next(id, late); !alive.contains(one.value))
           ended.push_back(one);
   }
-  for (const CollectionId id : ended) pe.had_ended(id);
+  for (const CollectionId id : ended) pe.collections().had_ended(id);
   for (const SavedCollection& saved : question.collections) {
     Collection& collection = *find_collection(pe, saved.id);
     collection.restored();
@@ -310,7 +310,7 @@ std::string latest_checkpoint(const std::string& folder) {
 TaskOf<std::vector<std::byte>> read_checkpoint(std::string folder, std::string state_type) {
   require_main("restart()");
   Pe& pe = current_pe();
-  if (pe.has_futures())
+  if (!pe.futures().empty())
     fail(ErrorCode::bad_argument,
          "restart() comes first, but this run has already made a future, which a callback of the "
          "saved run could find: make it after the restart");

@@ -8,6 +8,7 @@
 #include "runtime/checkpoint/quiet.hpp"
 #include "runtime/core/error.hpp"
 #include "runtime/core/text.hpp"
+#include "runtime/pe/census.hpp"
 #include "runtime/pe/runtime.hpp"
 #include "runtime/watch/report/waiting.hpp"
 
@@ -20,9 +21,9 @@ namespace tess::detail {
 namespace {
 
 /// The collections of a PE that a checkpoint saves or refuses, in the order of their ids.
-std::vector<Collection*> saved_collections(const Pe& pe) {
+std::vector<Collection*> saved_collections(Pe& pe) {
   std::vector<Collection*> all;
-  for (HostedCollection* hosted : pe.collections()) {
+  for (HostedCollection* hosted : pe.collections().all()) {
     auto* const collection = static_cast<Collection*>(hosted);
     if (collection->kind().saving != Saving::skipped) all.push_back(collection);
   }
@@ -58,7 +59,7 @@ std::vector<std::string> take_census(Pe& pe, const CensusQuestion& question) {
       frames.push_back(at.address());
   }
   std::vector<std::string> lines;
-  Waits waits = pe.census(frames);
+  Waits waits = detail::census(pe, frames);
   for (WaitLine& line : waits.lines) lines.push_back(std::move(line.text));
   for (const Collection* collection : saved_collections(pe)) {
     collection->describe_unsaved(lines);
@@ -124,8 +125,8 @@ std::vector<SectionId> pack_all(const std::vector<Collection*>& collections, Buf
 SaveAnswer save_here(Pe& pe, const SaveQuestion& question) {
   SaveAnswer answer;
   const std::vector<Collection*> collections = saved_collections(pe);
-  answer.numbers = pe.collection_numbers().made();
-  answer.places_of_futures = pe.places_of_futures();
+  answer.numbers = pe.collections().numbers().made();
+  answer.places_of_futures = pe.futures().n_places();
   answer.timers = pe.timers().n_made();
   for (const Collection* collection : collections) {
     HereSaved here{collection->id(), collection->has_sections(), collection->n_local(), {}};

@@ -140,7 +140,7 @@ class InterfaceProxy : public Sends<InterfaceProxy<I, IndexType>> {
   }
   template <auto F, class Of>
   [[nodiscard]] Head head(detail::How<Of> how) const {
-    static_assert(detail::entry_rule<I, F>.creates == detail::Creates::no,
+    static_assert(detail::entry_rule<I, F>.demand == detail::Demand::none,
                   "an interface creates no element: its class is not known");
     return {face_, Priority{detail::priority_by<I, F>(how.of)}};
   }
@@ -148,37 +148,26 @@ class InterfaceProxy : public Sends<InterfaceProxy<I, IndexType>> {
   void post(detail::How<Of> how, Args&&... args) const {
     static_assert(detail::check_entry<I, F, Args...>());
     Pe& pe = current_pe();
-    post_message(pe, detail::Call<Class, Head, F>::make(pe, collection(), index_, head<F>(how),
+    post_message(pe, detail::Call<Class, Head, F>::make(pe, collection_, index_, head<F>(how),
                                                         std::forward<Args>(args)...));
   }
   template <auto F, class Of, class... Args>
   [[nodiscard]] Ask<Class, F> ask_as(detail::How<Of> how, Args&&... args) const {
     static_assert(detail::check_ask<I, F, Args...>());
     Pe& pe = current_pe();
-    Ask<Class, F> reply(collection(), index_);
+    Ask<Class, F> reply(collection_, index_);
     post_message(pe,
                  detail::AskCall<Class, Head, F>::make(pe, collection_, index_, head<F>(how),
                                                        reply.place(), std::forward<Args>(args)...));
     return reply;
   }
-  [[nodiscard]] CollectionId collection() const {
-    TESS_CHECK(!face_.empty(), "a message to an empty InterfaceProxy<", name_of_type<I>,
-               ">: assign array[index] to it first");
-    return collection_;
-  }
   template <class Message>
   void post_message(Pe& pe, Message* message) const {
-    if (detail::Meter* meter = pe.meter(); meter != nullptr && meter->weighs_messages())
-        [[unlikely]]
-      meter->sent({collection_, IndexHash<Index>()(index_)},
-                  detail::payload_bytes(message->arguments));
-    pe.count(*message);
-    if (detail::Collection* array = detail::find_collection(pe, message->collection);
-        array != nullptr) {
-      static_cast<detail::ArrayOf<Index>*>(array)->post_counted(message);
-    } else {
-      pe.send_here(message);  // it waits until the array is known here
-    }
+    detail::weigh(pe, collection_, index_, message->arguments);
+    detail::post_new(pe, message, [this] {
+      TESS_CHECK(!face_.empty(), "a message to an empty InterfaceProxy<", name_of_type<I>,
+                 ">: assign array[index] to it first");
+    });
   }
   [[nodiscard]] std::tuple<CollectionId, Index, detail::FacePointer<I>> fields() const {
     return {collection_, index_, face_};

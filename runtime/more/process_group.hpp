@@ -194,7 +194,7 @@ void create_shared_arrives(Pe& pe, CreateShared<Part, Args...>&& m, Counted coun
 template <class Part, class... Args>
 CollectionId create_shared(Args&&... args) {
   Pe& pe = current_pe();
-  const CollectionId id = pe.new_collection_id(LateMessages::counted);
+  const CollectionId id = pe.collections().new_id(LateMessages::counted);
   using Create = CreateShared<Part, std::decay_t<Args>...>;
   Create create{id, {std::forward<Args>(args)...}};
   constexpr auto handler = &create_shared_arrives<Part, std::decay_t<Args>...>;

@@ -102,7 +102,7 @@ SectionProxy<C> create_section(const ArrayProxy<C>& array, std::vector<typename 
                  " has the index ", index_text(index), " twice");
   }
   Pe& pe = current_pe();
-  const detail::SectionId id{pe.new_collection_id(LateMessages::ignored).value};
+  const detail::SectionId id{pe.collections().new_id(LateMessages::ignored).value};
   detail::send_to_collection<&Lists::create_arrives>(
       pe, array.id(), detail::root_of(CollectionId{id.value}, pe.n_pes()),
       {id, std::move(indices)});

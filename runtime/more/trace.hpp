@@ -18,7 +18,7 @@ namespace tess {
 /// Marks this moment on this PE.
 inline void mark(std::string_view name) {
   Pe& pe = current_pe();
-  if (detail::Trace* trace = pe.trace()) {
+  if (detail::Trace* trace = pe.measuring().trace()) {
     const std::uint64_t now = pe.meter()->now();
     trace->event(std::string(name), now, now);
   }
@@ -29,7 +29,7 @@ inline void mark(std::string_view name) {
 class Span {
  public:
   explicit Span(std::string_view name) : pe_(current_pe()) {
-    if (pe_.trace() == nullptr) return;
+    if (pe_.measuring().trace() == nullptr) return;
     traced_ = true;
     name_ = name;
     began_ = pe_.meter()->now();
@@ -37,7 +37,7 @@ class Span {
   Span(const Span&) = delete;
   Span& operator=(const Span&) = delete;
   ~Span() {
-    if (traced_) pe_.trace()->event(std::move(name_), began_, pe_.meter()->now());
+    if (traced_) pe_.measuring().trace()->event(std::move(name_), began_, pe_.meter()->now());
   }
 
  private:

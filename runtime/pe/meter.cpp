@@ -31,11 +31,11 @@ Meter::Meter(Machine& machine, PeId pe)
       gap_ticks_(ticks(gap_seconds)) {}
 
 void Meter::watch_enters(const Action* action) {
-  watched_->watch()->enters(watched_->context().element, action);
+  watched_->measuring().watch()->enters(watched_->context().element, action);
 }
 
 void Meter::watch_leaves() {
-  watched_->watch()->leaves();
+  watched_->measuring().watch()->leaves();
 }
 
 std::uint64_t Meter::pass() {

@@ -1,6 +1,7 @@
 // Messages that arrive from other processes: they are unpacked where they arrive, passed to their
 // PE, and repaid once they have run.
 #include "runtime/core/check.hpp"
+#include "runtime/pe/exchange.hpp"
 #include "runtime/pe/pe.hpp"
 #include "runtime/pe/pe_action.hpp"
 #include "runtime/pe/queues/outbox.hpp"
@@ -17,7 +18,7 @@ struct Credit {
   std::uint64_t amount = 0;
 };
 void credit_arrives(Pe& pe, Credit&& credit) {
-  pe.on_repaid(credit.from, credit.amount);
+  pe.exchange().on_repaid(credit.from, credit.amount);
 }
 
 /// Lets a producer on this PE continue.
@@ -25,7 +26,7 @@ struct Room {
   ProcessId process;
 };
 void room_arrives(Pe& pe, Room&& room) {
-  if (pe.outbox().go_on_one(room.process)) send_system<&room_arrives>(pe, pe.id(), room);
+  if (pe.exchange().outbox().go_on_one(room.process)) send_system<&room_arrives>(pe, pe.id(), room);
 }
 
 /// `n_bytes` includes the attached parts.
@@ -49,21 +50,21 @@ Envelope* unpack(Pe& pe, PeId sender, const PackedHeader& header, Reader& body,
 
 }  // namespace
 
-void Pe::receive(std::span<const std::byte> bytes) {
-  const RunsOn here(*this);
+void Exchange::receive(std::span<const std::byte> bytes) {
+  const RunsOn here(pe_);
   Reader read(bytes);
   const auto from = read.take<PackedFrom>();
   while (read.remaining() != 0) {
     const auto header = read.take<PackedHeader>();
     Reader body(read.view(header.n_bytes));
     const std::uint64_t n_bytes = sizeof header + header.n_bytes;
-    hand_over(unpack(*this, from.sender, header, body, n_bytes), n_bytes);
+    pe_.hand_over(unpack(pe_, from.sender, header, body, n_bytes), n_bytes);
   }
 }
 
-Envelope* Pe::place(std::span<const std::byte> head, std::span<const std::uint64_t> sizes,
-                    std::vector<std::span<std::byte>>& taken) {
-  const RunsOn here(*this);
+Envelope* Exchange::place(std::span<const std::byte> head, std::span<const std::uint64_t> sizes,
+                          std::vector<std::span<std::byte>>& taken) {
+  const RunsOn here(pe_);
   Reader read(head);
   const auto from = read.take<PackedFrom>();
   const auto header = read.take<PackedHeader>();
@@ -71,33 +72,23 @@ Envelope* Pe::place(std::span<const std::byte> head, std::span<const std::uint64
   Reader body(read.view(header.n_bytes), &places);
   const std::uint64_t attached = std::accumulate(sizes.begin(), sizes.end(), std::uint64_t{0});
   Envelope* message =
-      unpack(*this, from.sender, header, body, sizeof header + header.n_bytes + attached);
+      unpack(pe_, from.sender, header, body, sizeof header + header.n_bytes + attached);
   TESS_CHECK(taken.size() == sizes.size(), plain_name(message->action->name()),
              ": the arguments read back leave ", sizes.size() - taken.size(), " of ", sizes.size(),
              " large vectors; does serialize() read what it writes?");
   return message;
 }
 
-void Pe::hand_over(Envelope* message, std::size_t n_bytes) {
-  if (message->target == id_) {
-    if (audit_) [[unlikely]]
-      audit_arrival(message);
-    enqueue(message);
-  } else {
-    pass(message->target, message, n_bytes);
-  }
-}
-
-void Pe::repay(PeId sender, std::uint32_t charge) {
+void Exchange::repay(PeId sender, std::uint32_t charge) {
   if (const std::uint64_t amount = outbox_->owe(sender, charge); amount != 0)
-    send_system<&credit_arrives>(*this, sender, Credit{id_, amount});
+    send_system<&credit_arrives>(pe_, sender, Credit{pe_.id(), amount});
 }
 
-void Pe::on_repaid(PeId from, std::uint64_t amount) {
-  const ProcessId process = machine_.process_of(from);
+void Exchange::on_repaid(PeId from, std::uint64_t amount) {
+  const ProcessId process = pe_.machine().process_of(from);
   outbox_->repaid(process, amount);
   if (outbox_->holds()) hold();
-  if (outbox_->awaited(process)) send_system<&room_arrives>(*this, id_, Room{process});
+  if (outbox_->awaited(process)) send_system<&room_arrives>(pe_, pe_.id(), Room{process});
 }
 
 }  // namespace tess::detail

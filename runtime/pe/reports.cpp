@@ -1,6 +1,7 @@
 // What a run reports while it goes on or when it cannot: what a PE runs, the audit, and the watch
 // of a simulated machine, which uses virtual time.
 #include "runtime/core/check.hpp"
+#include "runtime/pe/census.hpp"
 #include "runtime/pe/pe_action.hpp"
 #include "runtime/pe/runtime.hpp"
 #include "runtime/watch/report/pe_watch.hpp"
@@ -51,18 +52,13 @@ std::string reply_key(CollectionId id, std::uint64_t index_hash) {
   return text(id.value, "/", index_hash);
 }
 
-void Pe::start_watch() {
-  watch_ = std::make_unique<PeWatch>();
-  start_meter().show_to(*this);
-}
-
 std::string seconds_text(double seconds) {
   return fmt::format("{:.3g} s", seconds);
 }
 
 std::optional<Runtime::Running> Runtime::watched(PeId id) {
   std::optional<Running> running;
-  PeWatch* const watch = pe(id).watch();
+  PeWatch* const watch = pe(id).measuring().watch();
   if (watch == nullptr) return running;
   watch->look([&](const Element* element, const Action* action, double seconds) {
     const std::string where =
@@ -89,7 +85,7 @@ void Runtime::on_virtual_tick(Pe& pe, std::uint64_t n_before, std::int64_t since
                               std::uint32_t n_late) {
   if (pe.stopped() || n_late == most_late_ticks) return;
   std::uint64_t n_entered = 0;
-  for (const auto& one : pes_) n_entered += one->watch()->n_entered();
+  for (const auto& one : pes_) n_entered += one->measuring().watch()->n_entered();
   const Time now = pe.now(), half = options_.hang_report / 2;
   if (n_entered != n_before) return set_virtual_tick(pe, half, {n_entered, now.count(), 0});
   const Time idle = now - Time(since_ns);
@@ -102,13 +98,13 @@ void Runtime::report_virtual_hang(Time now, Time idle) {
   Waits waits;
   std::vector<AuditRow> rows;
   for (const auto& one : pes_) {
-    waits.merge(one->census_of_running());
-    const std::vector<AuditRow> more = one->audit_rows();
+    waits.merge(census_of_running(*one));
+    const std::vector<AuditRow> more = one->measuring().audit_rows();
     rows.insert(rows.end(), more.begin(), more.end());
-    if (const Time until = one->now(); until > now && one->watch()->last() != nullptr)
+    if (const Time until = one->now(); until > now && one->measuring().watch()->last() != nullptr)
       waits.add(WaitRank::handler,
-                text(one->id(), " runs ", plain_name(one->watch()->last()->name()), " for another ",
-                     seconds_text(seconds(until - now))));
+                text(one->id(), " runs ", plain_name(one->measuring().watch()->last()->name()),
+                     " for another ", seconds_text(seconds(until - now))));
   }
   error_line(text(hang_heading(idle),
                   waits.empty() ? "nothing waits" : list_of_waiting(std::move(waits)),

@@ -3,6 +3,7 @@
 #include "runtime/base/program_name.hpp"
 #include "runtime/core/check.hpp"
 #include "runtime/core/hash.hpp"
+#include "runtime/pe/census.hpp"
 #include "runtime/pe/measure/critical_path.hpp"
 #include "runtime/pe/pe_action.hpp"
 #include "runtime/watch/report/pe_watch.hpp"
@@ -91,11 +92,11 @@ Runtime::Runtime(Machine& machine, const RuntimeOptions& options, const ElementW
     pes_.push_back(std::make_unique<Pe>(PeId{first_.value + i}, *this, machine,
                                         pools_.emplace_back(), options.seed, options.messages));
     Pe& pe = *pes_.back();
-    pe.set_forced_migrations(options.migration_chance, options.mover);
-    if (options.statistics) pe.start_meter();
-    if (!options.trace.empty()) pe.start_trace(most_trace_records);
-    if (options.hang_report.count() != 0) pe.start_watch();
-    if (options.audit) pe.start_audit(options.fault);
+    pe.forced_migrations().set(options.migration_chance, options.mover);
+    if (options.statistics) pe.measuring().start_meter();
+    if (!options.trace.empty()) pe.measuring().start_trace(most_trace_records);
+    if (options.hang_report.count() != 0) pe.measuring().start_watch();
+    if (options.audit) pe.measuring().start_audit(options.fault);
   }
   set_check_context(&context_of_this_thread);
 }
@@ -104,7 +105,7 @@ Runtime::~Runtime() = default;
 
 void Runtime::watch(ProcessMonitor& monitor) {
   monitor_ = &monitor;
-  for (const auto& pe : pes_) pe->start_idle_time();
+  for (const auto& pe : pes_) pe->measuring().start_idle_time();
 }
 
 void Runtime::prepare() const {
@@ -167,7 +168,7 @@ void Runtime::start(PeId id) {
 }
 
 void Runtime::run_main(Pe& pe) {
-  const WatchedMain watched(pe.watch(), pe.running());
+  const WatchedMain watched(pe.measuring().watch(), pe.running());
   main_();
 }
 
@@ -180,8 +181,8 @@ void Runtime::finish(PeId id) {
   const RunsOn here(pe(id));
   if (options_.statistics) print_statistics(id);
   if (!left_) {
-    still_.merge(pe(id).census());
-    const std::vector<AuditRow> rows = pe(id).audit_rows();
+    still_.merge(census(pe(id)));
+    const std::vector<AuditRow> rows = pe(id).measuring().audit_rows();
     still_counted_.insert(still_counted_.end(), rows.begin(), rows.end());
   }
   pe(id).drop_all();
@@ -193,7 +194,7 @@ void Runtime::print_statistics(PeId id) {
   const double busy = of.meter()->seconds(of.meter()->busy()) +
                       seconds(machine_.message_cost()) * static_cast<double>(s.messages);
   std::size_t chares = 0;
-  for (const HostedCollection* collection : of.collections()) chares += collection->n_local();
+  for (const HostedCollection* collection : of.collections().all()) chares += collection->n_local();
   error_line(fmt::format(
       "stats: PE {} messages {} sent {} bytes {} busy {:.6f} s idle {:.6f} s chares {} forwards {} "
       "migrations {} dead letters {}",
@@ -205,7 +206,7 @@ void Runtime::write_traces() {
   if (options_.trace.empty()) return;
   std::vector<TraceOfPe> all;
   for (const auto& pe : pes_)
-    all.push_back({pe->id(), pe->trace(), pe->meter()->seconds(1'000'000'000) * 1e-9,
+    all.push_back({pe->id(), pe->measuring().trace(), pe->meter()->seconds(1'000'000'000) * 1e-9,
                    pes_.front()->meter()->made(), 1e-6 + 2 * seconds(machine_.message_cost())});
   write_trace(trace_path(), machine_.process(), all);
   if (machine_.n_pes_here() != machine_.n_pes()) return;  // the path goes through other processes
@@ -234,8 +235,10 @@ void Runtime::error_line(const std::string& line) {
 std::string Runtime::describe(Pe& pe) const {
   const Context& context = pe.context();
   std::string out = text("on ", pe.id());
-  if (pe.constructed_index() != nullptr)
-    return out + text(", ", pe.constructing_collection()->constructed_text(pe.constructed_index()),
+  if (pe.nesting().constructed_index() != nullptr)
+    return out + text(", ",
+                      pe.nesting().constructing_collection()->constructed_text(
+                          pe.nesting().constructed_index()),
                       ", in the constructor");
   if (context.element != nullptr) out += text(", ", element_words_.text(*context.element));
   if (context.action != nullptr) out += text(", in ", plain_name(context.action->name()));
@@ -285,7 +288,7 @@ void Runtime::end_with(Pe& pe, int code, int signal) {
 void Runtime::on_stop(Pe& pe, int signal) {
   if (signal != 0) machine_.hurry(128 + signal);
   if (signal != 0 && service_ != nullptr)
-    service_->ends_by_signal(signal, pe.id(), pe.census_of_running());
+    service_->ends_by_signal(signal, pe.id(), census_of_running(pe));
   pe.stop_user_code();
   const int asked = asked_[static_cast<std::size_t>(pe.id().value - first_.value)];
   send_uncounted<&stopped_arrives>(pe, PeId{0}, Code{std::max(asked, 0)});
@@ -297,7 +300,7 @@ void Runtime::on_stopped(Pe& pe, int code) {
   send_to_each<&leave_arrives>(pe, Code{exit_code_});
   // At once: as soon as another PE of this process receives its message, it stops the process, and
   // this PE would leave with the packed messages for the other processes.
-  pe.flush();
+  pe.exchange().flush();
 }
 
 void Runtime::on_leave(int code) {
@@ -322,15 +325,15 @@ void Runtime::quiescent(Pe& pe) {
 void Runtime::on_census_asked(Pe& pe) {
   pe.timers().freeze();
   std::vector<EmptyArray> empty;
-  for (HostedCollection* collection : pe.collections()) {
+  for (HostedCollection* collection : pe.collections().all()) {
     const auto [array, section] = collection->has_nothing_to_reduce();
     if (array) empty.push_back({collection->id(), collection->name()});
     if (section) empty.push_back({{}, "a section of " + collection->name()});
   }
   send_uncounted<&census_arrives>(
       pe, PeId{0},
-      Census{pe.census(), pe.statistics().dead_letters, std::move(empty), pe.stopped(),
-             pe.completion().run_sent(), pe.timers().n_periodic(), pe.audit_rows()});
+      Census{census(pe), pe.statistics().dead_letters, std::move(empty), pe.stopped(),
+             pe.completion().run_sent(), pe.timers().n_periodic(), pe.measuring().audit_rows()});
 }
 
 void Runtime::on_census(Pe& pe, Census&& census) {

@@ -133,10 +133,12 @@ class Runtime final : public Program {
   std::size_t step(PeId id, std::size_t most) override { return pe(id).step(most); }
   bool idle(PeId id) override { return pe(id).idle(); }
   void busy(PeId id) override { pe(id).busy(); }
-  void receive(PeId id, std::span<const std::byte> bytes) override { pe(id).receive(bytes); }
+  void receive(PeId id, std::span<const std::byte> bytes) override {
+    pe(id).exchange().receive(bytes);
+  }
   Link* place(PeId id, std::span<const std::byte> head, std::span<const std::uint64_t> sizes,
               std::vector<std::span<std::byte>>& places) override {
-    return pe(id).place(head, sizes, places);
+    return pe(id).exchange().place(head, sizes, places);
   }
   void placed(PeId id, Link* message) override;
   void drop(Link* message) override { discard(static_cast<Envelope*>(message)); }

@@ -251,6 +251,15 @@ TEST_CASE("a proxy with a priority is a value: sent, asked, a target", "[runtime
   CHECK(order == std::vector<int>{-2, -1, 1, 2, 3});
 }
 
+TEST_CASE("the hash of a proxy with a priority depends on the priority", "[runtime][proxy]") {
+  const tess::ElementProxy<Actor> actor(tess::CollectionId{7}, {3});
+  const auto first = actor.with(tess::Priority{1}), second = actor.with(tess::Priority{2});
+  CHECK(first.hash() == actor.with(tess::Priority{1}).hash());
+  CHECK(first.hash() != second.hash());
+  CHECK(first.hash() != first.with(tess::create_home).hash());
+  CHECK(actor.with(tess::create_here).hash() != actor.with(tess::create_home).hash());
+}
+
 namespace {
 
 /// Waits for a while, and counts those that live.

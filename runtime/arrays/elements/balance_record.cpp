@@ -21,7 +21,7 @@ struct PackedTraffic {
 }  // namespace
 
 void EndRecord::operator()(BalanceRecord* record) const {
-  if (Pe* const pe = current_pe_or_null()) pe->forget(record->load);
+  if (Pe* const pe = current_pe_or_null()) pe->measuring().forget(record->load);
   delete record;
 }
 

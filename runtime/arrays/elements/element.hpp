@@ -25,6 +25,7 @@ class Group;
 
 namespace tess::detail {
 
+class BalancedElements;
 class Collection;
 class Sections;
 struct BalanceRecord;
@@ -64,6 +65,7 @@ class TessElement {
   static void after_construction(const char* what, std::function<void()> call);
 
  private:
+  friend class BalancedElements;
   friend class Collection;
   friend class Sections;
   template <class>

@@ -5,19 +5,10 @@
 #include "runtime/arrays/elements/element.hpp"
 #include "runtime/core/index.hpp"
 #include "runtime/pe/block.hpp"
+#include "runtime/wire/messages/entry_attributes.hpp"
 #include "runtime/wire/messages/envelope.hpp"
 
 namespace tess::detail {
-
-/// What a message requests if its element does not exist.
-enum class Demand : std::uint8_t {
-  none,              ///< wait at home until the element is created
-  here,              ///< create it by its default constructor on the sending PE
-  home,              ///< create it by its default constructor on the home PE of the index
-  insert,            ///< the message is a constructor call; misuse if the element exists
-  insert_if_absent,  ///< the message is a constructor call; no effect if the element exists
-  member,  ///< as none, but once an element was destroyed it is dropped, whatever the array
-};
 
 template <class Index>
 struct ElementMessage : Envelope {

@@ -16,7 +16,7 @@ template <class C, class... Args>
     try {
       return new C(std::forward<Args>(args)...);
     } catch (...) {
-      current_pe().note_constructor(name_of_type<C>, {name_of_type<std::decay_t<Args>>...});
+      current_pe().error().note_constructor(name_of_type<C>, {name_of_type<std::decay_t<Args>>...});
       throw;
     }
   });

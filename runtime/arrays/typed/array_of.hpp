@@ -64,7 +64,7 @@ class TessIndexedElement : public Element {
   template <class>
   friend class tess::Group;
   [[nodiscard]] static const void* constructed() {
-    const void* index = current_pe().constructed_index();
+    const void* index = current_pe().nesting().constructed_index();
     TESS_CHECK(index != nullptr,
                "only its array makes a chare: use create<C>(…) or array[index].insert(…)");
     return index;
@@ -170,7 +170,7 @@ class ArrayOf : public Collection {
   /// ends the job once the caller is done.
   template <class Invoke>
   void run_now(Indexed& element, const Action& action, const Invoke& invoke) {
-    const Pe::Nested nested(pe_);
+    const Nesting::Call nested(pe_.nesting());
     const Action* const outer = pe_.running();
     const std::uint32_t led_by = Collection::led_by(pe_.context(), id());
     pe_.begins(&action);
@@ -179,7 +179,7 @@ class ArrayOf : public Collection {
       try {
         invoke();
       } catch (...) {
-        pe_.keep_exception(std::current_exception());
+        pe_.error().keep(std::current_exception());
       }
     }
     pe_.begins(outer);
@@ -192,8 +192,9 @@ class ArrayOf : public Collection {
   void settle(Element& element) override {
     if (element.n_suspended_ != 0) return;
     if (!element.destroy_requested_ && element.migrate_to_.value < 0) return;
-    if (pe_.nests()) return settle_later(element);  // the caller may have it as an object (local())
-    const Pe::Nested none(pe_, Pe::most_nested);    // its destructor may send messages
+    // The caller may have it as an object (local()), and its destructor may send messages.
+    if (pe_.nesting().nests()) return settle_later(element);
+    const Nesting::Call none(pe_.nesting(), Nesting::most_calls);
     if (element.destroy_requested_) {
       destroy_here(static_cast<Indexed&>(element));
     } else {
@@ -294,7 +295,7 @@ class ArrayOf : public Collection {
   template <class Make>
   void construct(const Index& index, Version version, const Make& make, std::uint32_t joins = 0) {
     Indexed* element = [&] {
-      const Pe::Construction construction(pe_, &index, this);
+      const Nesting::Construction construction(pe_.nesting(), &index, this);
       return make();
     }();
     add_constructed(*element, index, version, joins);
@@ -393,7 +394,7 @@ inline void ArrayOf<Index>::execute(Indexed& element, CallMessage* message) {
     try {
       action.invoke(element, *message);
     } catch (...) {
-      pe_.note_place();
+      pe_.error().note_place();
       discard(message);
       throw;
     }

@@ -46,7 +46,7 @@ void Arrival<Index>::run(Pe& pe, Envelope* envelope) {
   auto* arrival = static_cast<Arrival*>(envelope);
   Collection* collection = find_collection(pe, arrival->collection);
   if (collection == nullptr) {
-    pe.keep_early(arrival->collection, envelope, &ArrayOf<Index>::drop_arrival);
+    pe.collections().keep_early(arrival->collection, envelope, &ArrayOf<Index>::drop_arrival);
     return;
   }
   const Counted counted(pe.completion(), arrival->epoch);

@@ -80,6 +80,25 @@ template <class... T>
   }
 }
 
+/// Tells the balancer, if it asks for it, that such a message is sent.
+template <class Index, class Arguments>
+void weigh(Pe& pe, CollectionId collection, const Index& index, const Arguments& arguments) {
+  if (Meter* meter = pe.meter(); meter != nullptr && meter->weighs_messages()) [[unlikely]]
+    meter->sent({collection, IndexHash<Index>()(index)}, payload_bytes(arguments));
+}
+/// Sends a new message from here, in its epoch. It waits here if its array is not known yet; before,
+/// `check` refuses a proxy that names none.
+template <class Index, class Check>
+void post_new(Pe& pe, ElementMessage<Index>* message, const Check& check) {
+  Counted::departs(pe.completion(), message->epoch);
+  if (Collection* array = find_collection(pe, message->collection); array != nullptr) [[likely]] {
+    static_cast<ArrayOf<Index>*>(array)->post_counted(message);
+  } else {
+    check();
+    pe.send_here(message);
+  }
+}
+
 /// Construction, packing and release of a message type that derives from ElementMessage and has
 /// `arguments`.
 template <class Derived, class C, class Arguments>
@@ -199,7 +218,7 @@ struct Awakening final : TypedMessage<Awakening<C>, C, std::tuple<>> {
   using Base::Base;
 
   static void invoke(Element& element, ElementMessage<Index>& /*message*/) {
-    if (Collection::awake(element)) (void)static_cast<C&>(element).resume_from_sync();
+    if (BalancedElements::awake(element)) (void)static_cast<C&>(element).resume_from_sync();
   }
   static inline const ElementAction<Index> entry{std::type_identity<Awakening>{},
                                                  &Awakening::invoke, nullptr, Traffic::control};

@@ -17,7 +17,7 @@ void ArrayOf<Index>::depart(Indexed& element, PeId to) {
   const Index index = element.index_;
   unlist(element);
   ++n_departures_;
-  count_departure(element);
+  balanced().departs(element);
   const Version version{element.state_.version.incarnation, element.state_.version.epoch + 1};
   element.state_.version = version;
   table_.at(index).set(home(index) == pe_.id() ? IndexState::moving : IndexState::departed, to,
@@ -55,7 +55,7 @@ void ArrayOf<Index>::ship(Indexed& element, PeId to, Memberships&& memberships) 
 
 template <class Index>
 auto ArrayOf<Index>::construct_again(const Index& index) -> Indexed* {
-  const Pe::Construction construction(pe_, &index, this);
+  const Nesting::Construction construction(pe_.nesting(), &index, this);
   Indexed* const element = construct_default();
   // The first construction has already done what the constructor asks for.
   drop_after_construction();
@@ -72,7 +72,7 @@ void ArrayOf<Index>::take_in(Arrival<Index>& arrival) {
     const auto index = ar.template take<Index>();
     arrival.element = construct_again(index);
     ar(arrival.element->state_);
-    unpack_record(*arrival.element, ar);
+    BalancedElements::unpack_record(*arrival.element, ar);
     [[maybe_unused]] const auto sent = state.last(ar.remaining());
     read_all_members(*arrival.element, ar);
 #ifdef TESS_CHECKS_ALL
@@ -89,11 +89,11 @@ std::uint64_t ArrayOf<Index>::drop_arrival(Pe& pe, Envelope& envelope) {
   auto& arrival = static_cast<Arrival<Index>&>(envelope);
   const Counted counted(pe.completion(), arrival.epoch);
   if (arrival.element != nullptr) {
-    end_wait(pe, *arrival.element);
+    BalancedElements::end_wait(pe, *arrival.element);
   } else {
     Reader ar(std::span<const std::byte>(arrival.state.data(), arrival.state.size()));
     (void)ar.template take<Index>();
-    drop_record(pe, ar);
+    BalancedElements::drop_record(pe, ar);
   }
   tess::detail::drop(pe, arrival.memberships);
   if (arrival.element == nullptr) return 0;
@@ -118,7 +118,7 @@ void ArrayOf<Index>::add_arrived(Indexed* element, PeId from, Memberships&& memb
   const std::uint64_t seen = element->state_.seen_broadcast;
   const Version version = element->state_.version;
   table_.at(index).set_here(*element);
-  count_arrival(*element);
+  balanced().arrives(*element);
   list(*element);
   enter_sections(*element, std::move(memberships));
   // It stays until it has received the broadcasts that it missed: only then has it arrived.
@@ -221,13 +221,9 @@ void ArrayOf<Index>::destroy_here(Indexed& element) {
   const std::uint32_t next = element.state_.next_reduction;
   unlist(element);
   ++n_departures_;
-  end_wait(pe_, element);
+  BalancedElements::end_wait(pe_, element);
   end_memberships(element);
-  if (watcher() != nullptr) [[unlikely]] {
-    watcher()->destroyed(element);
-  } else {
-    note_unwatched_end(element);
-  }
+  balanced().destroyed(element);
   // The destructor may send to its own index or insert there again.
   const bool is_home = home(index) == pe_.id();
   if (is_home) {

@@ -15,7 +15,7 @@ void ArrayOf<Index>::run_message(Pe& pe, Envelope* envelope) {
   auto* message = static_cast<CallMessage*>(envelope);
   Collection* collection = find_collection(pe, message->collection);
   if (collection == nullptr) [[unlikely]] {
-    pe.keep_early(message->collection, envelope, &drop_message);
+    pe.collections().keep_early(message->collection, envelope, &drop_message);
     return;
   }
   static_cast<ArrayOf*>(collection)->arrive(message);
@@ -103,7 +103,7 @@ void ArrayOf<Index>::learn(const Index& index, const Place& place) {
 /// `record` is this PE's knowledge of the index, or null.
 template <class Index>
 void ArrayOf<Index>::route(CallMessage* message, Record* record) {
-  if (pe_.constructed_index() != nullptr) [[unlikely]] {
+  if (pe_.nesting().constructed_index() != nullptr) [[unlikely]] {
     // A constructor sent it: its element may be constructed next, or may be the sender.
     arrive_later(message);
     return;

@@ -33,7 +33,7 @@ void take(Collection& collection, const Saved& saved, Reader& ar) {
   collection.take_saved(saved.incarnation, saved.kind != SavedKind::destroyed, ar);
   // The element is the last one now, unless it is a member of a group that another one absorbed.
   if (saved.kind == SavedKind::balanced && collection.elements().size() > n_before)
-    Collection::make_record(*collection.elements().back()).past = saved.load;
+    BalancedElements::make_record(*collection.elements().back()).past = saved.load;
 }
 void saved_arrives(Collection& collection, Saved&& saved) {
   Reader ar(std::span<const std::byte>(saved.bytes.data(), saved.bytes.size()));
@@ -49,7 +49,7 @@ void Collection::save(Writer& ar, const std::function<void()>& written) {
   for (Element* element : elements_) {
     ar(element->state_.version.incarnation);
     if (element->balance_)
-      ar(SavedKind::balanced, element->balance_->to_save(pe_.start_meter()));
+      ar(SavedKind::balanced, element->balance_->to_save(pe_.measuring().start_meter()));
     else
       ar(SavedKind::alive);
     try {
@@ -89,7 +89,7 @@ void Collection::section_had_ended(SectionId id) {
 
 void Collection::describe_unsaved(std::vector<std::string>& lines) const {
   for (const Element* element : elements_)
-    if (element->balance_ && element->balance_->sync.phase != SyncPhase::runs)
+    if (BalancedElements::waits(*element))
       lines.push_back(element_text(*element) + " waits at at_sync()");
 }
 

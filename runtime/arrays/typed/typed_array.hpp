@@ -174,7 +174,7 @@ class Array final : public ArrayOf<typename C::Index> {
                     "class: define it here, and call that of the base class in it");
       C& chare = static_cast<C&>(element);
       ar(own(chare).index_, own(chare).state_);
-      Base::pack_record(own(chare), ar);
+      BalancedElements::pack_record(own(chare), ar);
       chare.serialize(ar);
     }
   }
@@ -183,7 +183,7 @@ class Array final : public ArrayOf<typename C::Index> {
     if constexpr (requires(C& c) { c.resume_from_sync(); }) {
       C& chare = static_cast<C&>(element);
       auto* message = Awakening<C>::make(this->pe_, this->id(), own(chare).index_);
-      const Counted wait = this->continue_wait(own(chare), *message, message->led_by);
+      const Counted wait = this->balanced().continue_wait(own(chare), *message, message->led_by);
       message->demand = Demand::member;  // it brings no destroyed element back
       this->post(message);
     } else {

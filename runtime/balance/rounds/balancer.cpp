@@ -66,10 +66,10 @@ Balancer::Balancer(const Plan& plan)
 }
 
 void Balancer::watch(Collection& array) {
-  TESS_CHECK(array.watcher() == nullptr, array.name(), " has a balancer already");
+  TESS_CHECK(array.balanced().watcher() == nullptr, array.name(), " has a balancer already");
   array_ = &array;
   array_name_ = array.name();
-  array.set_watcher(*this);
+  array.balanced().watch(*this);
   measured_.attach(array);
 }
 
@@ -82,12 +82,12 @@ void Balancer::attach(Collection& array) {
   } else {
     barrier_.attach(array);
   }
-  Meter& meter = current_pe().start_meter();
+  Meter& meter = current_pe().measuring().start_meter();
   if (plan_.when == BalanceWhen::periodic)
     meter.add_alarm(meter.ticks(1e-9 * static_cast<double>(plan_.period_ns)), this,
                     [this] { alarm(); });
   // Only the barrier has to know which elements are under way.
-  contribute(sum, plan_.passes ? 0 : array.n_away(),
+  contribute(sum, plan_.passes ? 0 : array.balanced().n_away(),
              group()[plan_.coordinator].target<&Balancer::attached_everywhere>());
 }
 
@@ -111,10 +111,10 @@ void Balancer::group_ends() {
 }
 
 void Balancer::detach() {
-  current_pe().start_meter().remove_alarms(this);
+  current_pe().measuring().start_meter().remove_alarms(this);
   measured_.detach();
   barrier_.detach();
-  if (array_ != nullptr) array_->remove_watcher();
+  if (array_ != nullptr) array_->balanced().unwatch();
   array_ = nullptr;
 }
 
@@ -199,7 +199,7 @@ void Balancer::at_sync(Element& element) {
 }
 
 void Balancer::pass(Element& element) {
-  const SyncState& sync = Collection::record_of(element)->sync;
+  const SyncState& sync = BalancedElements::record_of(element)->sync;
   if (sync.phase == SyncPhase::waits) array_->resume(element);
 }
 
@@ -477,7 +477,8 @@ void Balancer::alarm() {
 GroupProxy<Balancer> start(CollectionId array, const BalanceOptions& options, Strategy users) {
   if (array == CollectionId{}) detail::refuse_empty_proxy("start_balancing() of");
   Pe& pe = current_pe();
-  TESS_CHECK(!pe.ended(array), "start_balancing() of an array that was destroyed on ", pe.id());
+  TESS_CHECK(!pe.collections().ended(array), "start_balancing() of an array that was destroyed on ",
+             pe.id());
   validate(options, pe.n_pes(), users ? StrategyOf::user : StrategyOf::runtime);
   const bool passes =
       options.when == BalanceWhen::periodic ||

@@ -6,7 +6,7 @@ namespace tess::balance {
 namespace {
 
 SyncState& sync_of(Element& element) {
-  return Collection::record_of(element)->sync;
+  return BalancedElements::record_of(element)->sync;
 }
 
 }  // namespace
@@ -23,10 +23,10 @@ Barrier::Barrier(Pe& pe, Collection& group, PeId coordinator, Callback<std::uint
 
 void Barrier::attach(Collection& array) {
   array_ = &array;
-  for (const std::uint32_t next : array.take_unwatched_ends()) tree_.remove_member(next);
+  for (const std::uint32_t next : array.balanced().take_unwatched_ends()) tree_.remove_member(next);
   for (Element* element : array.elements()) {
     if (element == nullptr) continue;
-    SyncState& sync = Collection::make_record(*element).sync;
+    SyncState& sync = BalancedElements::make_record(*element).sync;
     if (sync.entry == SyncEntry::none) join(sync, 0);
     tree_.enter(sync.next);
   }
@@ -57,7 +57,7 @@ void Barrier::join(SyncState& sync, std::uint32_t round) {
 Barrier::Entrant Barrier::entered(Element& element) {
   SyncState& sync = sync_of(element);
   const bool first_here = sync.entry == SyncEntry::none;
-  const bool created = first_here && Collection::never_moved(element);
+  const bool created = first_here && BalancedElements::never_moved(element);
   if (created && n_resumed_ != tree_.joins_at()) return Entrant::newcomer;
   if (first_here) join(sync, created ? n_resumed_ : 0);
   tree_.enter(sync.next);
@@ -134,7 +134,7 @@ std::string Barrier::missing_before(std::uint32_t round) const {
   if (array_ == nullptr) return out;
   for (const Element* element : array_->elements()) {
     if (element == nullptr) continue;
-    const SyncState& sync = Collection::record_of(*element)->sync;
+    const SyncState& sync = BalancedElements::record_of(*element)->sync;
     if (sync.entry != SyncEntry::member || sync.next >= round) continue;
     if (++n <= 5) out += (n > 1 ? ", " : "") + element_text(*element);
   }

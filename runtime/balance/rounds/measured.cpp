@@ -28,15 +28,15 @@ void Measured::detach() {
 }
 
 void Measured::entered(Element& element) {
-  BalanceRecord& record = Collection::make_record(element);
-  if (Collection::never_ran(element)) record.load.since = LoadRecord::Since::construction;
+  BalanceRecord& record = BalancedElements::make_record(element);
+  if (BalancedElements::never_ran(element)) record.load.since = LoadRecord::Since::construction;
   record.load.of_pe = &in_elements_;
   record.load.continue_at(speed_);
   record.position = BalanceRecord::nowhere;
 }
 
 void Measured::left(Element& element) {
-  BalanceRecord& record = *Collection::record_of(element);
+  BalanceRecord& record = *BalancedElements::record_of(element);
   record.load.of_pe = nullptr;
   if (record.position != BalanceRecord::nowhere) reported_[record.position] = nullptr;
   record.position = BalanceRecord::nowhere;
@@ -69,7 +69,7 @@ void Measured::keep_as_past(BalanceRecord& record) const {
 }
 
 void Measured::add(Element& element, std::uint64_t round, PeReport& report) {
-  BalanceRecord& record = *Collection::record_of(element);
+  BalanceRecord& record = *BalancedElements::record_of(element);
   record.position = reported_.size();
   reported_.push_back(&element);
   const std::uint64_t key = array_->key_of(element);
@@ -102,7 +102,8 @@ PeReport Measured::report(std::uint64_t round, Others others) {
   report.background = busy_outside(others);
   begin_phase();
   for (Element* element : reported_)
-    if (element != nullptr) Collection::record_of(*element)->position = BalanceRecord::nowhere;
+    if (element != nullptr)
+      BalancedElements::record_of(*element)->position = BalanceRecord::nowhere;
   reported_.clear();
   if (array_ == nullptr) return report;
   for (Element* element : array_->elements())
@@ -119,7 +120,7 @@ PhaseSums Measured::sums(Others others) const {
   }
   for (const Element* element : array_->elements()) {
     if (element == nullptr) continue;
-    const LoadRecord& load = Collection::record_of(*element)->load;
+    const LoadRecord& load = BalancedElements::record_of(*element)->load;
     if (load.known()) {
       seconds += meter_.seconds(load.ticks);
       ++n_measured;
@@ -135,14 +136,14 @@ void Measured::clear() {
   begin_phase();
   if (array_ == nullptr) return;
   for (Element* element : array_->elements())
-    if (element != nullptr) Collection::record_of(*element)->load.clear();
+    if (element != nullptr) BalancedElements::record_of(*element)->load.clear();
 }
 
 void Measured::pass_phase() {
   if (array_ != nullptr)
     for (Element* element : array_->elements()) {
       if (element == nullptr) continue;
-      keep_as_past(*Collection::record_of(*element));
+      keep_as_past(*BalancedElements::record_of(*element));
     }
   clear();
 }
@@ -152,7 +153,7 @@ PastLoad Measured::past() const {
   if (array_ == nullptr) return sum;
   for (const Element* element : array_->elements()) {
     if (element == nullptr) continue;
-    const PastLoad& past = Collection::record_of(*element)->past;
+    const PastLoad& past = BalancedElements::record_of(*element)->past;
     sum.of_last_phase += std::max(past.of_last_phase, 0.0);
     sum.since_then += std::max(past.since_then, 0.0);
   }
@@ -165,7 +166,7 @@ std::uint64_t Measured::recall(bool interrupted) {
   if (array_ == nullptr) return n_known;
   for (Element* element : array_->elements()) {
     if (element == nullptr) continue;
-    BalanceRecord& record = *Collection::record_of(*element);
+    BalanceRecord& record = *BalancedElements::record_of(*element);
     const double past = interrupted ? record.past.since_then : record.past.of_last_phase;
     record.load.ticks = meter_.ticks(std::max(past, 0.0) / speed_);
     if (past < 0)
@@ -182,7 +183,7 @@ Measured::Moved Measured::move(const std::vector<Move>& moves) {
     Element* element = reported_[one.element];
     if (element == nullptr) continue;
     ++moved.n_elements;
-    moved.n_bytes += Collection::record_of(*element)->size_bytes;
+    moved.n_bytes += BalancedElements::record_of(*element)->size_bytes;
     array_->move(*element, one.to);
   }
   return moved;

@@ -20,7 +20,7 @@ class Measured {
   /// The speed of the PE is relative.
   Measured(Pe& pe, SnapshotIndices indices, double speed)
       : pe_(pe),
-        meter_(pe.start_meter()),
+        meter_(pe.measuring().start_meter()),
         indices_(indices),
         speed_(speed),
         busy_before_(meter_.busy()) {}

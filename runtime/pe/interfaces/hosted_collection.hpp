@@ -32,7 +32,7 @@ class HostedCollection {
   /// First: the collection has no elements here, and was called by a broadcast, so that its
   /// reduction may be awaited. Second: a section whose root is here has no members.
   [[nodiscard]] virtual std::pair<bool, bool> has_nothing_to_reduce() const = 0;
-  /// "Block[3,4]": the text for the index that Pe::constructed_index() points to.
+  /// "Block[3,4]": the text for the index that Nesting::constructed_index() points to.
   [[nodiscard]] virtual std::string constructed_text(const void* index) const = 0;
   /// The indices of a dense array; of other collections it has no axes.
   [[nodiscard]] virtual const Range& range() const = 0;

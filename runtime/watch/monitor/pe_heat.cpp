@@ -36,16 +36,16 @@ std::vector<HeatCells> PeHeat::begin(const std::vector<HeatQuery>& queries) {
 void PeHeat::watch(const std::vector<HeatQuery>& queries) {
   std::erase_if(maps_, [&](const auto& one) {
     return std::find(queries.begin(), queries.end(), one.first) == queries.end() ||
-           pe_.find(one.first.map.array) == nullptr;
+           pe_.collections().find(one.first.map.array) == nullptr;
   });
   for (const HeatQuery& query : queries) {
-    const HostedCollection* collection = pe_.find(query.map.array);
+    const HostedCollection* collection = pe_.collections().find(query.map.array);
     if (collection != nullptr) maps_.try_emplace(query, collection->range());
   }
 }
 
 void PeHeat::begin_window() {
-  Meter& meter = pe_.start_brief_meter();
+  Meter& meter = pe_.measuring().start_brief_meter();
   open_ = listens_ = true;
   spent_.clear();
   running_ = {};
@@ -61,7 +61,7 @@ void PeHeat::stop_metering() {
   open_ = listens_ = false;
   if (pe_.meter() == nullptr) return;
   pe_.meter()->set_listener(nullptr);
-  pe_.stop_brief_meter();
+  pe_.measuring().stop_brief_meter();
 }
 
 void PeHeat::changed(std::uint64_t at) {
@@ -77,7 +77,7 @@ void PeHeat::changed(std::uint64_t at) {
   if (element == nullptr) return;
   for (auto& [query, map] : maps_) {
     if (query.map.by != HeatBy::load) continue;
-    const HostedCollection* collection = pe_.find(query.map.array);
+    const HostedCollection* collection = pe_.collections().find(query.map.array);
     const std::int64_t rank = collection != nullptr ? collection->rank_of(*element) : -1;
     if (rank < 0) continue;
     running_ = {&map, map.grid.cell_of(rank), 0};
@@ -136,7 +136,7 @@ std::vector<HeatCells> PeHeat::close_window() {
 }
 
 bool PeHeat::count(const HeatQuery& query, Map& map) {
-  const HostedCollection& collection = *pe_.find(query.map.array);
+  const HostedCollection& collection = *pe_.collections().find(query.map.array);
   const std::vector<Element*>& elements = collection.elements();
   const auto n_pes_here = static_cast<std::size_t>(pe_.machine().n_pes_here());
   // The PEs of a simulated machine share a thread, and may answer rarely.

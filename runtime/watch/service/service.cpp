@@ -1,5 +1,6 @@
 #include "runtime/watch/service/service.hpp"
 
+#include "runtime/pe/census.hpp"
 #include "runtime/pe/pe_action.hpp"
 #include "runtime/pe/runtime.hpp"
 #include "runtime/watch/service/hang_watch.hpp"
@@ -373,7 +374,7 @@ void Service::Loop::on_signal(int signal) {
 namespace {
 
 void census_is_asked(Pe& pe, CensusAsked&& asked) {
-  loop_of(pe).take(asked.round, pe.id(), pe.census_of_running(), pe.audit_rows());
+  loop_of(pe).take(asked.round, pe.id(), census_of_running(pe), pe.measuring().audit_rows());
 }
 void job_ask_is_sent(Pe& pe, JobAsk&& ask) {
   if (!loop_of(pe).asks_first(ask.round)) return;

@@ -22,6 +22,18 @@
 
 namespace tess {
 
+namespace detail {
+/// What a message requests if its element does not exist.
+enum class Demand : std::uint8_t {
+  none,              ///< wait at home until the element is created
+  here,              ///< create it by its default constructor on the sending PE
+  home,              ///< create it by its default constructor on the home PE of the index
+  insert,            ///< the message is a constructor call; misuse if the element exists
+  insert_if_absent,  ///< the message is a constructor call; no effect if the element exists
+  member,  ///< as none, but once an element was destroyed it is dropped, whatever the array
+};
+}  // namespace detail
+
 /// Of the messages that are ready on a PE the one with the smallest number runs first; equal ones
 /// run in the order in which they reached the queue. A message without a priority has 0.
 struct Priority {
@@ -32,8 +44,12 @@ struct Priority {
 inline constexpr Priority expedited{std::numeric_limits<std::int64_t>::min()};
 
 struct InlineWhenLocal {};
-struct CreateHere {};
-struct CreateHome {};
+struct CreateHere {
+  static constexpr auto demand = detail::Demand::here;
+};
+struct CreateHome {
+  static constexpr auto demand = detail::Demand::home;
+};
 /// A message to an element of this PE runs inside send(), if an entry method sends it and no code
 /// of the element runs or waits. Otherwise, and in a deep chain of such calls, it is queued as
 /// usual. An element that ends or moves by it does so once the sender's message is done.
@@ -54,13 +70,15 @@ struct Attributes {};
 
 namespace tess::detail {
 
-enum class Creates : std::uint8_t { no, here, home };
+/// Where a message creates its element.
+template <class T>
+concept CreatesWhere = std::is_same_v<T, CreateHere> || std::is_same_v<T, CreateHome>;
 
 /// What a class says about one entry method.
 struct EntryRule {
   std::int64_t priority = 0;
   bool inlined = false;
-  Creates creates = Creates::no;
+  Demand demand = Demand::none;
 };
 
 constexpr void apply(EntryRule& rule, Priority priority) {
@@ -69,11 +87,8 @@ constexpr void apply(EntryRule& rule, Priority priority) {
 constexpr void apply(EntryRule& rule, InlineWhenLocal /*of*/) {
   rule.inlined = true;
 }
-constexpr void apply(EntryRule& rule, CreateHere /*of*/) {
-  rule.creates = Creates::here;
-}
-constexpr void apply(EntryRule& rule, CreateHome /*of*/) {
-  rule.creates = Creates::home;
+constexpr void apply(EntryRule& rule, CreatesWhere auto where) {
+  rule.demand = where.demand;
 }
 
 template <class T, class... Others>
@@ -95,9 +110,8 @@ struct RuleOf<F, EntryMethod<F, Of...>> {
                   "tess::create_home or a tess::Priority");
     static_assert((0 + ... + int{std::is_same_v<std::remove_cv_t<decltype(Of)>, Priority>}) <= 1,
                   "an entry method has one priority");
-    static_assert(
-        (0 + ... + int{is_one_of<std::remove_cv_t<decltype(Of)>, CreateHere, CreateHome>}) <= 1,
-        "an entry method creates its element in one place: create_here or create_home");
+    static_assert((0 + ... + int{CreatesWhere<std::remove_cv_t<decltype(Of)>>}) <= 1,
+                  "an entry method creates its element in one place: create_here or create_home");
     EntryRule made;
     if constexpr (known) (apply(made, Of), ...);
     return made;

@@ -239,7 +239,7 @@ tess::Task end_from_within() {
   co_await tess::epoch([&] { group[tess::PeId{1}].send<&LastMember::end>(); });
   CHECK(n_alive == 0);
   CHECK(group.local_or_null() == nullptr);
-  CHECK(tess::current_pe().collections().empty());
+  CHECK(tess::current_pe().collections().all().empty());
 }
 
 TEST_CASE("an array and a group are ended by their own members", "[runtime][destroy]") {
