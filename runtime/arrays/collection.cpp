@@ -292,14 +292,11 @@ void Collection::contribute(Element& element, std::unique_ptr<Partial> value,
 }
 
 std::string Collection::elements_before(std::uint32_t number) const {
-  std::string out;
-  std::size_t n = 0;
-  for (const Element* element : elements_) {
-    if (element == nullptr || element->state_.next_reduction >= number) continue;
-    if (++n <= 5) out += (n > 1 ? ", " : "") + element_text(*element);
-  }
-  if (n > 5) out += text(" and ", n - 5, " more");
-  return out;
+  FirstFew missing;
+  for (const Element* element : elements_)
+    if (element != nullptr && element->state_.next_reduction < number)
+      missing.add([element] { return element_text(*element); });
+  return missing.text();
 }
 
 std::pair<bool, bool> Collection::has_nothing_to_reduce() const {

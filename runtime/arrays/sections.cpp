@@ -12,19 +12,12 @@ namespace {
 
 struct ReportTo {
   SectionId section;
-  SectionReport report;
+  ReductionReport report;
   template <class Ar>
   void serialize(Ar& ar) {
     ar(section, report);
   }
-  std::uint64_t drop(Pe& pe) const {
-    settle(pe.completion(), report.gathered.shares);
-    return 0;
-  }
-};
-struct AttachTo {
-  SectionId section;
-  SectionAttach attach;
+  std::uint64_t drop(Pe& pe) const { return report.drop(pe); }
 };
 struct Gone {
   SectionId section;
@@ -42,17 +35,12 @@ void report_arrives(Collection& collection, ReportTo&& m) {
     m.drop(collection.pe());
   }
 }
-void attach_arrives(Collection& collection, AttachTo&& m) {
-  if (SectionPart* part = collection.sections().part(m.section); part != nullptr)
-    part->reduction.on_attach(m.attach);
-}
 void gone_arrives(Collection& collection, Gone&& m) {
   Sections& sections = collection.sections();
   SectionPart* part = sections.part(m.section);
   if (part == nullptr) return;
   sections.lists()->gone(m.section, m.ordinal);
-  part->total.remove_member(m.next);
-  part->deliver_complete();
+  part->reduction.member_destroyed(m.next);
 }
 void end_arrives(Collection& collection, EndSection&& m, Counted /*counted*/) {
   collection.sections().end(m.section);
@@ -84,27 +72,25 @@ SectionPart::SectionPart(Sections& sections_, SectionId id_)
     : sections(sections_),
       id(id_),
       reduction(*this, sections_.collection().pe().completion(), sections_.collection().pe().id(),
-                sections_.root(id_), sections_.collection().pe().n_pes()) {}
+                sections_.root(id_), sections_.collection().pe().n_pes(),
+                {"a section of " + sections_.collection().name() + ": reduction",
+                 [this](std::uint32_t number) { return members_before(number); }},
+                MembersOf::section) {}
 
-void SectionPart::send(PeId to, SectionReport&& report) {
+void SectionPart::send(PeId to, ReductionReport&& report) {
   send_to_collection<&report_arrives>(sections.collection(), to, ReportTo{id, std::move(report)});
 }
-void SectionPart::send(PeId to, const SectionAttach& attach) {
-  send_to_collection<&attach_arrives>(sections.collection(), to, AttachTo{id, attach});
+
+void SectionPart::deliver(Partial& result, EpochId epoch) {
+  sections.collection().deliver(result, epoch, "a section of ");
 }
 
-void SectionPart::arrived(std::uint32_t number, Gathered&& gathered) {
-  total.arrived(number, std::move(gathered));
-  deliver_complete();
-}
-
-void SectionPart::deliver_complete() {
-  Pe& pe = sections.collection().pe();
-  for (Gathered whole; total.take(whole); whole = {}) {
-    sections.collection().deliver(*whole.value.held, whole.epoch(), "a section of ");
-    // The result has been sent in the same epoch before the contributions are settled.
-    settle(pe.completion(), whole.shares);
-  }
+std::string SectionPart::members_before(std::uint32_t number) const {
+  FirstFew missing;
+  for (const Member& member : members)
+    if (member.element != nullptr && member.next < number)
+      missing.add([&member] { return element_text(*member.element); });
+  return missing.text();
 }
 
 Sections::~Sections() = default;
@@ -357,7 +343,6 @@ void Sections::free(std::unique_ptr<SectionPart> part, std::vector<Element*>& re
     seats_.erase(seats);
   }
   part->reduction.end();
-  part->total.end(collection_.pe().completion());
 }
 
 void Sections::end(SectionId id) {
@@ -382,7 +367,8 @@ void Sections::end_all() {
 }
 
 bool Sections::any_empty() const {
-  return std::ranges::any_of(parts_, [](const auto& of) { return of.second->total.empty(); });
+  return std::ranges::any_of(parts_,
+                             [](const auto& of) { return of.second->reduction.is_empty(); });
 }
 
 void Sections::describe_waiting(std::vector<std::string>& lines) const {
@@ -391,15 +377,7 @@ void Sections::describe_waiting(std::vector<std::string>& lines) const {
       if (member.element != nullptr && !member.joined)
         lines.push_back(text(element_text(*member.element),
                              " contributes to a section that it is no member of"));
-    if (SectionTotal::Incomplete found; part->total.first_incomplete(found))
-      lines.push_back(text(collection_.name(), ": reduction ", found.number, " of a section has ",
-                           found.n, found.n == 1 ? " contribution" : " contributions", " of ",
-                           found.n_members, " members"));
-    if (const std::uint64_t n = part->reduction.n_waiting(); n != 0)
-      lines.push_back(text(
-          collection_.name(), ": ", n,
-          n == 1 ? " contribution to a section waits on " : " contributions to a section wait on ",
-          collection_.pe().id(), " for other members"));
+    part->reduction.describe_waiting(lines);
   }
   if (lists_) lists_->describe_waiting(lines);
 }

@@ -12,7 +12,7 @@
 
 #include "runtime/arrays/membership.hpp"
 #include "runtime/pe/tables/ended_collections.hpp"
-#include "runtime/reduce/section_reduction.hpp"
+#include "runtime/reduce/reduction_tree.hpp"
 
 #include <cstdint>
 #include <memory>
@@ -47,15 +47,18 @@ class SectionLists {
 };
 
 /// One section on one PE.
-class SectionPart final : public SectionHost {
+class SectionPart final : public ReductionHost {
  public:
   SectionPart(Sections& sections, SectionId id);
 
-  void send(PeId to, SectionReport&& report) override;
-  void send(PeId to, const SectionAttach& attach) override;
-  void arrived(std::uint32_t number, Gathered&& gathered) override;
-  /// On the root: delivers the numbers that are complete.
-  void deliver_complete();
+  void send(PeId to, ReductionReport&& report) override;
+  void deliver(Partial& result, EpochId epoch) override;
+  // PEs that attach are not asked, and broadcasts do not say where members join.
+  void send(PeId /*to*/, const ReductionBegin& /*begin*/) override {}
+  [[nodiscard]] std::uint64_t applied_broadcast() const override { return 0; }
+  void postpone_new_elements() override {}
+  /// The members here that have not contributed to all numbers below one, as text.
+  [[nodiscard]] std::string members_before(std::uint32_t number) const;
 
   struct Member {
     Element* element = nullptr;  // null: it has left while multicasts run
@@ -82,8 +85,7 @@ class SectionPart final : public SectionHost {
   unsigned running = 0;       // multicasts that run: members keep their slots
   bool has_holes = false;     // members left meanwhile
   std::uint32_t current = 0;  // the slot of the member that runs, or ran last
-  SectionReduction reduction;
-  SectionTotal total;  // used on the root
+  ReductionTree reduction;
 };
 
 class Sections {
@@ -145,7 +147,7 @@ class Sections {
       return {of, of->current};
     return find_contributor(*of, element);
   }
-  void contributed(const Seat& seat) { seat.part->reduction.added(seat.member().next++); }
+  void contributed(const Seat& seat) { seat.part->reduction.added(seat.member().next++, {}); }
   void contribute(const Seat& seat, std::unique_ptr<Partial> value);
 
   // Elements that come and go.

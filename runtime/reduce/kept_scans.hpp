@@ -1,5 +1,5 @@
 // The contributions to scans that wait on a PE for the values before theirs. Each collection has
-// such a list on each PE from its first scan on; collections/arrays/scan_partial.hpp says what is
+// such a list on each PE from its first scan on; arrays/typed/scan_partial.hpp says what is
 // in it.
 #pragma once
 

@@ -1,6 +1,6 @@
 // The reductions that are open on one PE, by number: what has been gathered to each until it is
-// passed on. ReductionTree and SectionReduction keep what the elements here contribute in it, and
-// their roots what has arrived.
+// passed on. A ReductionTree keeps what the elements here contribute in it, and its root what has
+// arrived.
 //
 // Elements mostly contribute one after the other to one number. So the sum that got the last
 // contribution is remembered, and more of the same kind and epoch are added to it in place.

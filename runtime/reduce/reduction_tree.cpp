@@ -12,19 +12,20 @@ void ReductionTree::end() {
 }
 
 ReductionTree::ReductionTree(ReductionHost& host, Completion& completion, PeId here, PeId root,
-                             std::int32_t n_pes, TreeWords words)
+                             std::int32_t n_pes, TreeWords words, MembersOf of)
     : host_(host),
       completion_(completion),
       words_(std::move(words)),
       here_(here),
       root_(root),
       parent_(SpanningTree(here, root, n_pes).parent()),
-      children_(SpanningTree(here, root, n_pes).children()) {}
+      of_section_(of == MembersOf::section),
+      children_(SpanningTree(here, root, n_pes).children(), !of_section_) {}
 
 ReductionTree::~ReductionTree() = default;
 
 void ReductionTree::ask_children(std::uint32_t number, const Cause& cause) {
-  for (const PeId child : children_) host_.send(child, ReductionBegin{number, cause});
+  for (const auto& child : children_) host_.send(child.pe, ReductionBegin{number, cause});
 }
 
 bool Cause::merge(const Cause& more) {
@@ -63,7 +64,7 @@ void ReductionTree::take(std::uint32_t number, Gathering& into, const Cause& cau
 void ReductionTree::led_earlier(std::uint32_t number, const Gathering& gathering) {
   (void)learn(number, gathering.cause.led_by);
   // A PE below that was asked or has reported may hold an element that waits for this number.
-  if (gathering.asked || gathering.children > 0) ask_children(number, gathering.cause);
+  if (gathering.asked || gathering.reported != 0) ask_children(number, gathering.cause);
 }
 
 void ReductionTree::take(std::uint32_t number, const Cause& cause) {
@@ -86,16 +87,32 @@ void ReductionTree::remove_member(std::uint32_t next) {
     changes_[next] -= 1;
     return;
   }
-  send_late_change(next, 0);
+  Reported gone;
+  gone.change = -1;
+  report_late(next, std::move(gone));
 }
 
-void ReductionTree::send_late_change(std::uint32_t number, std::uint32_t joins) {
-  ReductionReport late;
-  late.number = number;
-  late.sum.change = -1;
-  late.late = true;
+void ReductionTree::report_late(std::uint32_t number, Reported&& sum, std::uint32_t joins) {
+  ReductionReport late{ReductionReport::What::late, here_, {}, number, std::move(sum)};
   late.joins = joins;
   host_.send(root_, std::move(late));
+}
+
+void ReductionTree::begin(std::uint64_t n_members) {
+  begun_ = true;
+  whole_[0].change += static_cast<std::int64_t>(n_members);
+  complete_if_whole();
+}
+
+void ReductionTree::member_destroyed(std::uint32_t next) {
+  require_open(next);
+  whole_[next].change -= 1;
+  complete_if_whole();
+}
+
+bool ReductionTree::is_empty() const {
+  const Whole* const open = whole_.find(next_complete_);
+  return begun_ && members_ + (open == nullptr ? 0 : open->change) == 0;
 }
 
 std::uint32_t ReductionTree::postpone(std::uint32_t next, std::uint32_t created_after) {
@@ -104,8 +121,10 @@ std::uint32_t ReductionTree::postpone(std::uint32_t next, std::uint32_t created_
   leave(next);
   enter(later);
   if (later < next_report_) {
-    send_late_change(
-        next, later);  // one message, so that the root completes no number between the two changes
+    // One message, so that the root completes no number between the two changes.
+    Reported moved;
+    moved.change = -1;
+    report_late(next, std::move(moved), later);
   } else {
     remove_member(next);
     add_member(later);
@@ -139,14 +158,12 @@ void ReductionTree::contribute(std::uint32_t number, EpochId epoch, std::unique_
 void ReductionTree::gather(std::uint32_t number, EpochId epoch, std::unique_ptr<Partial> value,
                            const Cause& cause, Newcomer newcomer, bool named) {
   if (number < next_report_) {  // this PE has reported: the element arrived later
-    ReductionReport late;
-    late.number = number;
-    late.late = true;
-    late.sum.add(completion_, epoch, std::move(value));
-    late.sum.cause = cause;
-    late.sum.newcomer = std::move(newcomer);
-    late.sum.named = named;
-    host_.send(root_, std::move(late));
+    Reported late;
+    late.add(completion_, epoch, std::move(value));
+    late.cause = cause;
+    late.newcomer = std::move(newcomer);
+    late.named = named;
+    report_late(number, std::move(late));
     return advance();  // the element may be ahead in the next numbers
   }
   Gathering& gathering = gathering_.add(completion_, number, epoch, std::move(value));
@@ -154,28 +171,52 @@ void ReductionTree::gather(std::uint32_t number, EpochId epoch, std::unique_ptr<
   gathering.named = gathering.named || named;
   gathering.note(std::move(newcomer));
   take(number, gathering, cause);
-  advance();
+  if (ready(next_report_)) advance();
 }
 
-bool ReductionTree::ready(std::uint32_t number) const {
-  return elements_at_.empty() || elements_at_.lowest() > number;
+void ReductionTree::flush(std::uint32_t end) {
+  while (!gathering_.empty() && gathering_.begin()->first < end) {
+    const std::uint32_t number = gathering_.begin()->first;
+    if (Gathering held = gathering_.take(number); held.n != 0) report_late(number, std::move(held));
+  }
+}
+
+bool ReductionTree::attach() {
+  const bool takes_part = !elements_at_.empty() || children_.any_attached();
+  if (takes_part && !attached_) {
+    constexpr std::uint32_t none = ~std::uint32_t{0};
+    const std::uint32_t lowest = elements_at_.empty() ? none : elements_at_.lowest();
+    next_report_ = std::max(next_report_, children_.first_below(lowest));
+    flush(next_report_);
+    as_ = Attachment{as_.time + 1, next_report_};
+  } else if (!takes_part) {
+    flush(~std::uint32_t{0});
+  }
+  if (std::exchange(attached_, takes_part) != takes_part && here_ != root_) {
+    using What = ReductionReport::What;
+    const What what = takes_part ? What::attached : What::detached;
+    host_.send(parent_, ReductionReport{what, here_, as_, 0, {}});
+  }
+  return attached_;
 }
 
 void ReductionTree::advance() {
+  if (of_section_ && !attach()) return;
   for (;;) {
     Gathering* const found = gathering_.find(next_report_);
-    if (found == nullptr || !found->known || !ready(next_report_)) return;
-    Gathering& gathering = *found;
-    if (static_cast<std::size_t>(gathering.children) < children_.size()) {
-      if (!gathering.asked) {
-        gathering.asked = true;
-        ask_children(next_report_, gathering.cause);
+    // A PE that is attached reports without being asked.
+    if (!attached_ && (found == nullptr || !found->known)) return;
+    if (!ready(next_report_)) return;
+    if (!children_.have_reported(next_report_, found == nullptr ? 0 : found->reported)) {
+      if (!of_section_ && !found->asked) {
+        found->asked = true;
+        ask_children(next_report_, found->cause);
       }
       return;
     }
     // An element that is created here after the report has received what led to the reduction.
-    if (gathering.cause.met > host_.applied_broadcast()) {
-      awaited_broadcast_ = gathering.cause.met;
+    if (found != nullptr && found->cause.met > host_.applied_broadcast()) {
+      awaited_broadcast_ = found->cause.met;
       return;
     }
     Gathering done = gathering_.take(next_report_);
@@ -189,9 +230,12 @@ void ReductionTree::advance() {
 
 void ReductionTree::report(std::uint32_t number, Gathering&& gathered) {
   if (root_ != here_) {
-    host_.send(parent_, ReductionReport{number, std::move(gathered)});
+    host_.send(parent_, ReductionReport{ReductionReport::What::sum, here_, as_, number,
+                                        std::move(gathered)});
     return;
   }
+  // Late contributions may have completed the number.
+  if (of_section_ && gathered.n == 0) return;
   Whole& whole = whole_[number];
   whole.all_reported = true;
   whole.merge(std::move(gathered));
@@ -201,12 +245,10 @@ void ReductionTree::report(std::uint32_t number, Gathering&& gathered) {
 void ReductionTree::join(std::uint32_t number, std::string element) {
   if (number >= next_report_) return add_member(number);
   ++n_late_joins_;
-  ReductionReport late;
-  late.number = number;
-  late.sum.change = 1;
-  late.sum.newcomer.element = std::move(element);
-  late.late = true;
-  host_.send(root_, std::move(late));
+  Reported late;
+  late.change = 1;
+  late.newcomer.element = std::move(element);
+  report_late(number, std::move(late));
 }
 
 void ReductionTree::start_count() {
@@ -221,17 +263,18 @@ void ReductionTree::start_count() {
 
 void ReductionTree::count_joins() {
   n_joins_below_ = n_late_joins_;
-  n_uncounted_ = children_.size();
   ReductionBegin begin;
   begin.counts = true;
-  for (const PeId child : children_) host_.send(child, begin);
+  for (const auto& child : children_) {
+    ++n_uncounted_;
+    host_.send(child.pe, begin);
+  }
   if (n_uncounted_ == 0) joins_counted();
 }
 
 void ReductionTree::joins_counted() {
   if (root_ != here_) {
-    ReductionReport report;
-    report.counts = true;
+    ReductionReport report{ReductionReport::What::late_joins, here_, {}, 0, {}};
     report.n_joins = n_joins_below_;
     return host_.send(parent_, std::move(report));
   }
@@ -241,39 +284,59 @@ void ReductionTree::joins_counted() {
   complete_if_whole();
 }
 
+void ReductionTree::require_open(std::uint32_t number) const {
+  // A member of a number contributes to it or is destroyed before the number is complete.
+  TESS_CHECK(number >= next_complete_, words_.name, " ", number,
+             " is complete, but a report of one of its members arrives: an element may have been ",
+             "inserted too late to join there");
+}
+
 void ReductionTree::on_report(ReductionReport&& report) {
-  if (report.counts) {
-    n_joins_below_ += report.n_joins;
-    if (--n_uncounted_ == 0) joins_counted();
-    return;
+  switch (report.what) {
+    case ReductionReport::What::sum:
+      return on_sum(std::move(report));
+    case ReductionReport::What::late:
+      return on_late(std::move(report));
+    case ReductionReport::What::attached:
+    case ReductionReport::What::detached:
+      children_.learn(report);
+      return advance();
+    case ReductionReport::What::late_joins:
+      n_joins_below_ += report.n_joins;
+      if (--n_uncounted_ == 0) joins_counted();
+  }
+}
+
+void ReductionTree::on_late(ReductionReport&& report) {
+  const Cause cause = report.sum.cause;
+  const bool joins = report.sum.change > 0;
+  TESS_CHECK(!joins || report.number >= next_complete_, report.sum.newcomer.element,
+             " is inserted to join at round ", report.number, ", but ", words_.name, " ",
+             report.number, " is complete: insert it before an element is called that ",
+             "contributes to this round, or name a later one");
+  if (joins) {
+    ++n_joined_;
+    confirmed_end_ = 0;
+  }
+  require_open(report.number);
+  whole_[report.number].merge(std::move(report.sum));
+  if (report.joins != 0) whole_[report.joins].change += 1;
+  if (!of_section_) take(report.number, cause);
+  advance();
+  complete_if_whole();
+}
+
+void ReductionTree::on_sum(ReductionReport&& report) {
+  children_.learn(report);  // it may have overtaken the news that the child is attached
+  if (!children_.counts(report) || report.number < next_report_) {
+    if (report.sum.n != 0) report_late(report.number, std::move(report.sum));
+    return advance();
   }
   const Cause cause = report.sum.cause;
-  if (report.late) {
-    const bool joins = report.sum.change > 0;
-    TESS_CHECK(!joins || report.number >= next_complete_, report.sum.newcomer.element,
-               " is inserted to join at round ", report.number, ", but ", words_.name, " ",
-               report.number, " is complete: insert it before an element is called that ",
-               "contributes to this round, or name a later one");
-    if (joins) {
-      ++n_joined_;
-      confirmed_end_ = 0;
-    }
-    // A member of a number contributes to it or is destroyed before the number is complete.
-    TESS_CHECK(
-        report.number >= next_complete_, words_.name, " ", report.number,
-        " is complete, but a report of one of its members arrives: an element may have been ",
-        "inserted too late to join there");
-    whole_[report.number].merge(std::move(report.sum));
-    if (report.joins != 0) whole_[report.joins].change += 1;
-    take(report.number, cause);
-    advance();
-    complete_if_whole();
-    return;
-  }
   Gathering& gathering = gathering_[report.number];
   gathering.known = true;
   if (gathering.merge(std::move(report.sum))) led_earlier(report.number, gathering);
-  ++gathering.children;
+  gathering.reported |= children_.bit(report.child);
   // The same holds for a PE that reported without this knowledge.
   if (cause.led_by != gathering.cause.led_by && !gathering.asked)
     ask_children(report.number, gathering.cause);
@@ -310,7 +373,7 @@ void ReductionTree::check_newcomer(const Reported& sum) const {
 
 bool ReductionTree::is_whole(std::uint32_t number, std::int64_t& members) const {
   const Whole* const whole = whole_.find(number);
-  if (whole == nullptr || !whole->all_reported) return false;
+  if (whole == nullptr || !(whole->all_reported || of_section_)) return false;
   members += whole->change;
   return static_cast<std::int64_t>(whole->n) == members;
 }
@@ -346,11 +409,13 @@ void ReductionTree::describe_waiting(std::vector<std::string>& lines) const {
   if (!elements_at_.empty() && elements_at_.lowest() < next_report_)
     lines.push_back(text(words_.name, " ", elements_at_.lowest(), " waits for ",
                          words_.missing_before(next_report_)));
+  std::int64_t members = members_;
   for (const auto& [number, whole] : whole_) {
+    members += whole.change;
     if (whole.n != 0)
       lines.push_back(text(words_.name, " ", number, " has ", whole.n,
-                           whole.n == 1 ? " contribution of " : " contributions of ",
-                           members_ + whole.change, " members"));
+                           whole.n == 1 ? " contribution of " : " contributions of ", members,
+                           " members"));
   }
 }
 

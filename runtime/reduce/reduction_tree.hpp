@@ -1,18 +1,31 @@
-// Reductions of one collection, seen from one PE. Contributions are numbered; number r is complete
-// when as many elements have contributed to r as are members of r, on whichever PEs they
-// contributed.
+// The reductions over the elements of a collection, or over the members of a section, seen from one
+// PE. Contributions are numbered; number r is complete when as many elements have contributed to r
+// as are members of r, on whichever PEs they contributed. They are combined along a tree of the PEs.
+// What comes too late for the report of a PE (the element has arrived since) goes directly to the
+// root, so a result does not depend on where elements are. MembersOf says which PEs report:
 //
-// The PEs form a tree. A PE reports r to its parent once every local element has contributed to r
-// and every child has reported r. The report carries the merged contributions, their count, and the
-// change of membership since r − 1: elements that join at r, and elements destroyed before r. A
-// contribution of an element that arrived after the report goes directly to the root, as does a
-// late destruction. The root completes r once it has all reports and the count equals the
-// membership:
+// Over a collection all PEs report. A PE reports r to its parent once every local element has
+// contributed to r and every child has reported r. The report carries the merged contributions,
+// their count, and the change of membership since r − 1: elements that join at r, and elements
+// destroyed before r. A late destruction goes directly to the root, too. The root completes r once
+// it has all reports and the count equals the membership:
 //
 //     contributions that arrived ≤ contributions made ≤ members ≤ members reported
 //
 // (an element that joins is never reported late). A PE without elements reports as soon as it
 // learns of r: from a child, or from a parent that is ready and still waits.
+//
+// Over a section only the PEs with members, and those between them and the root, report. The root
+// knows the members without being told, and counts.
+//
+//     attached   A PE that has a member, or an attached child, attaches to its parent. From the number
+//                it names it reports each number once: after its members and its attached children
+//                have passed the number.
+//     detached   A PE without both detaches, and sends what it holds directly to the root, as does a
+//                PE whose child has attached too late for the number.
+//
+// So a PE waits only for what is certain to come: a contribution of a member here, or a report or
+// the detachment of a child. The rest is about collections.
 //
 // Where an element joins: an element that is created on a PE after broadcast b was applied there
 // receives b + 1, b + 2, …, and joins at the first number that this PE has not reported and that no
@@ -42,11 +55,11 @@
 // is what it had received before it asked.
 #pragma once
 
-#include "runtime/core/ids.hpp"
-#include "runtime/reduce/gathered.hpp"
 #include "runtime/reduce/led_to.hpp"
 #include "runtime/reduce/number_counts.hpp"
 #include "runtime/reduce/open_sums.hpp"
+#include "runtime/reduce/reduction_messages.hpp"
+#include "runtime/reduce/tree_children.hpp"
 
 #include <cstdint>
 #include <functional>
@@ -56,73 +69,6 @@
 #include <vector>
 
 namespace tess::detail {
-
-class Completion;
-class Pe;
-
-/// The causes of contributions: the last broadcast that any of the contributors had received, and
-/// the first that led to one of the contributions (0: none is known).
-struct Cause {
-  std::uint64_t met = 0;
-  std::uint32_t led_by = 0;
-  /// Merges another. Returns true if an earlier broadcast led to it than was known.
-  bool merge(const Cause& more);
-};
-
-/// An element that contributes for the first time, and the last broadcast before its creation.
-struct Newcomer {
-  std::uint32_t created_after = 0;  // 0: there is none
-  std::string element;
-  // Its insertion was not awaited, and no known broadcast led it here: another contributor knows
-  // one, or rounds may overlap.
-  bool unawaited = false;
-};
-
-/// Contributions to a number, with what is reported beside them.
-struct Reported : Gathered {
-  std::int64_t change = 0;  // of the membership
-  Cause cause;
-  Newcomer newcomer;   // of these contributors the one that was created after the last broadcast
-  bool named = false;  // one of them names the number
-  void note(Newcomer&& other);
-  /// Returns true if an earlier broadcast led to it than was known.
-  bool merge(Reported&& more);
-  template <class Ar>
-  void serialize(Ar& ar) {
-    Gathered::serialize(ar);
-    ar(change, cause, newcomer, named);
-  }
-};
-
-/// A PE's report to its parent, or a late contribution or change of membership to the root.
-struct ReductionReport {
-  std::uint32_t number = 0;
-  Reported sum;
-  bool late = false;  // sent directly to the root
-  // In a late report: the element that leaves the membership of `number` joins there; 0: none.
-  std::uint32_t joins = 0;
-  bool expedites = false;
-  bool counts = false;        // the answer of a subtree to a count of late joins; nothing else
-  std::uint64_t n_joins = 0;  // the number of late joins
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(number, late, expedites, joins, counts, n_joins, sum);
-  }
-  [[nodiscard]] std::int64_t priority() const;
-  std::uint64_t drop(Pe& pe) const;  // the collection has ended
-};
-/// A ready PE asks the PEs below it for their reports, or for their late joins.
-struct ReductionBegin {
-  std::uint32_t number = 0;
-  Cause cause;
-  bool expedites = false;
-  bool counts = false;
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(number, cause, expedites, counts);
-  }
-  [[nodiscard]] std::int64_t priority() const;
-};
 
 /// What a ReductionTree needs of its PE and its collection.
 class ReductionHost {
@@ -143,6 +89,24 @@ class ReductionHost {
   virtual void deliver(Partial& result, EpochId epoch) = 0;
 };
 
+/// The first few of those that a tree waits for, as text: "Block[3], Block[5] and 7 more".
+class FirstFew {
+ public:
+  /// `words()` is called for those that are named.
+  template <class Words>
+  void add(const Words& words) {
+    if (++n_ <= most) text_ += (n_ > 1 ? ", " : "") + words();
+  }
+  [[nodiscard]] std::string text() const {
+    return n_ <= most ? text_ : text_ + " and " + std::to_string(n_ - most) + " more";
+  }
+
+ private:
+  static constexpr std::size_t most = 5;
+  std::string text_;
+  std::size_t n_ = 0;
+};
+
 /// The words of a tree in reports: "Block: reduction", and the members that have not contributed to
 /// all numbers below one.
 struct TreeWords {
@@ -153,11 +117,14 @@ struct TreeWords {
 /// Numbers have 32 bits, and some elements are ahead.
 inline constexpr std::uint32_t most_rounds = ~std::uint32_t{0} - (1U << 20U);
 
+/// Whose contributions a tree combines, and so which PEs report.
+enum class MembersOf : std::uint8_t { collection, section };
+
 class ReductionTree {
  public:
   /// The part of PE `here` of `n_pes`; `root` completes the reductions.
   ReductionTree(ReductionHost& host, Completion& completion, PeId here, PeId root,
-                std::int32_t n_pes, TreeWords words);
+                std::int32_t n_pes, TreeWords words, MembersOf of = MembersOf::collection);
   ReductionTree(const ReductionTree&) = delete;
   ReductionTree& operator=(const ReductionTree&) = delete;
   ~ReductionTree();
@@ -176,6 +143,13 @@ class ReductionTree {
   [[nodiscard]] std::uint32_t postpone(std::uint32_t next, std::uint32_t created_after);
   /// An element was destroyed that would have contributed to `next`.
   void remove_member(std::uint32_t next);
+  /// At the root of a section: it has so many members from now on, and no number is complete before.
+  void begin(std::uint64_t n_members);
+  /// At the root of a section: a member was destroyed elsewhere that would have contributed to
+  /// `next`.
+  void member_destroyed(std::uint32_t next);
+  /// At the root of a section: it has begun, and all members have been destroyed.
+  [[nodiscard]] bool is_empty() const;
 
   /// An element with this next number is on this PE from now on, or no longer.
   void enter(std::uint32_t next);
@@ -201,7 +175,7 @@ class ReductionTree {
   /// A contribution was added to open_sum().
   void added(std::uint32_t number, const Cause& cause);
 
-  /// Checks whether something can be reported; called after elements came or left.
+  /// Attaches, reports or detaches if that is possible now; called after elements came or left.
   void advance();
 
   /// The collection ends: contributions gathered here are dropped.
@@ -223,13 +197,25 @@ class ReductionTree {
 
  private:
   struct Gathering : Reported {
-    std::int32_t children = 0;
-    bool known = false;  // an element contributed, or a PE reported or asked
-    bool asked = false;  // the children were asked to begin
+    std::uint32_t reported = 0;  // the children that have, as bits of TreeChildren
+    bool known = false;          // an element contributed, or a PE reported or asked
+    bool asked = false;          // the children were asked to begin
   };
 
-  [[nodiscard]] bool ready(std::uint32_t number) const;
+  [[nodiscard]] bool ready(std::uint32_t number) const {
+    return elements_at_.empty() || elements_at_.lowest() > number;
+  }
   void report(std::uint32_t number, Gathering&& gathered);
+  void report_late(std::uint32_t number, Reported&& sum, std::uint32_t joins = 0);
+  /// Attaches or detaches if the members here and the children below have changed. Returns true if
+  /// this PE is attached.
+  bool attach();
+  /// Sends what is gathered for numbers below `end` directly to the root.
+  void flush(std::uint32_t end);
+  void on_sum(ReductionReport&& report);
+  void on_late(ReductionReport&& report);
+  /// Misuse: members were added to a number that is complete.
+  void require_open(std::uint32_t number) const;
   void complete_if_whole();
   /// True if all members of a number that is not complete have contributed. `members`: of the number
   /// before; then of this one.
@@ -240,7 +226,6 @@ class ReductionTree {
   void joins_counted();
   void check_newcomer(const Reported& sum) const;
 
-  void send_late_change(std::uint32_t number, std::uint32_t joins);
   void ask_children(std::uint32_t number, const Cause& cause);
   /// Records that a broadcast led to a contribution to `number`. Returns false if that was known.
   bool learn(std::uint32_t number, std::uint32_t led_by);
@@ -256,8 +241,11 @@ class ReductionTree {
   Completion& completion_;
   const TreeWords words_;
   const PeId here_, root_, parent_;
-  const std::vector<PeId> children_;
-  std::uint32_t next_report_ = 0;  // this PE has reported all lower numbers
+  const bool of_section_;
+  TreeChildren children_;
+  bool attached_ = false;
+  Attachment as_;
+  std::uint32_t next_report_ = 0;  // this PE has reported all lower numbers that it had to report
   OpenSums<Gathering> gathering_;
   std::map<std::uint32_t, std::int64_t> changes_;
   LedTo led_to_;
@@ -273,7 +261,8 @@ class ReductionTree {
   };
   OpenSums<Whole> whole_;
   std::uint32_t next_complete_ = 0;
-  std::int64_t members_ = 0;
+  std::int64_t members_ = 0;           // of the last complete number
+  bool begun_ = false;                 // the members of the section are known
   std::uint64_t n_joined_ = 0;         // late joins received
   std::uint64_t n_joined_before_ = 0;  // the same at the start of the count
   std::uint32_t counted_end_ = 0;    // numbers below were whole at the start; 0: none is under way

@@ -14,6 +14,10 @@
 // stale entries are a sixteenth of the members the root makes new lists: their next generation. A
 // PE keeps a generation until it has delivered all its multicasts (Retire gives their number).
 //
+// The alternative is a condition on the broadcasts of the array. It needs no lists, but all PEs: with
+// 4 members of 4096 elements on 1024 simulated PEs a multicast and a sum take 8328 messages and 31 us
+// instead of 156 messages on 55 PEs and 16 us; on 16 PEs 125 and 13 us instead of 35 and 10 us.
+//
 // What the root knows of the members is in SectionRoster, the lists of one PE in SectionGeneration.
 #pragma once
 
@@ -212,8 +216,7 @@ void SectionListsOf<Index>::on_create(Create&& create, EpochId epoch) {
   Lists* const lists = this->lists(create.section);
   if (lists == nullptr) return;
   Root& root = lists->root;
-  SectionPart& part = *sections().part(create.section);
-  part.total.begin(create.indices.size());
+  sections().part(create.section)->reduction.begin(create.indices.size());
   root.roster.create(create.indices.size());
   root.indices = std::move(create.indices);
   root.epoch = epoch;
@@ -225,7 +228,6 @@ void SectionListsOf<Index>::on_create(Create&& create, EpochId epoch) {
   }
   for (WaitingCall& waiting : std::exchange(root.waiting, {}))
     multicast(create.section, root, std::move(waiting));
-  part.deliver_complete();
 }
 
 template <class Index>
@@ -384,9 +386,7 @@ void SectionListsOf<Index>::on_lost(const SectionLost& lost) {
   Lists* const lists = this->lists(lost.section);
   if (lists == nullptr) return;
   gone(lost.section, lost.ordinal);
-  SectionPart& part = *sections().part(lost.section);
-  part.total.remove_member(0);
-  part.deliver_complete();
+  sections().part(lost.section)->reduction.member_destroyed(0);
 }
 
 template <class Index>

@@ -129,17 +129,15 @@ void Barrier::resume(std::uint32_t round) {
 }
 
 std::string Barrier::missing_before(std::uint32_t round) const {
-  std::string out;
-  std::size_t n = 0;
-  if (array_ == nullptr) return out;
+  FirstFew missing;
+  if (array_ == nullptr) return {};
   for (const Element* element : array_->elements()) {
     if (element == nullptr) continue;
     const SyncState& sync = BalancedElements::record_of(*element)->sync;
     if (sync.entry != SyncEntry::member || sync.next >= round) continue;
-    if (++n <= 5) out += (n > 1 ? ", " : "") + element_text(*element);
+    missing.add([element] { return element_text(*element); });
   }
-  if (n > 5) out += text(" and ", n - 5, " more");
-  return out;
+  return missing.text();
 }
 
 }  // namespace tess::balance

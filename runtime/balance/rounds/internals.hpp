@@ -19,6 +19,7 @@ using detail::Element;
 using detail::element_text;
 using detail::ElementWatcher;
 using detail::find_collection;
+using detail::FirstFew;
 using detail::LoadRecord;
 using detail::MergedPartial;
 using detail::Meter;

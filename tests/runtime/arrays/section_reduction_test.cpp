@@ -1,11 +1,10 @@
-// Reductions over a section by themselves: one part per PE and the count at the root, messages in
-// any order, and members that migrate and are destroyed at any time, also before the root knows how
-// many there are.
+// The reduction tree over the members of a section, by itself: one part per PE, messages in any
+// order, and members that migrate and are destroyed at any time, also before the root knows how many
+// there are.
 //
 // The oracles: a result has the contribution of each member that was not destroyed before, once,
 // and none comes later; the epochs of its contributions are open until then, and done afterwards.
-#include "runtime/reduce/section_reduction.hpp"
-
+#include "runtime/reduce/reduction_tree.hpp"
 #include "tests/runtime/arrays/network.hpp"
 #include "tests/support/catch.hpp"
 
@@ -28,12 +27,21 @@ struct Participant {
 
 class Parts;
 
+/// The host of a part that asks for nothing.
+class SectionHost : public ReductionHost {
+ public:
+  using ReductionHost::send;
+  void send(PeId /*to*/, const ReductionBegin& /*begin*/) final { FAIL("a section asks"); }
+  [[nodiscard]] std::uint64_t applied_broadcast() const final { return 0; }
+  void postpone_new_elements() final { FAIL("a member is postponed"); }
+};
+
 class PartHost final : public SectionHost {
  public:
   PartHost(Parts& parts, PeId here) : parts_(parts), here_(here) {}
-  void send(PeId to, SectionReport&& report) override;
-  void send(PeId to, const SectionAttach& attach) override;
-  void arrived(std::uint32_t number, Gathered&& gathered) override;
+  using SectionHost::send;
+  void send(PeId to, ReductionReport&& report) override;
+  void deliver(Partial& result, EpochId epoch) override;
 
   std::vector<Participant> members;
 
@@ -49,13 +57,18 @@ class Parts {
       : bag(seed), ledgers(n_pes), n_wanted(n_reductions), root(any_of(n_pes)) {
     for (std::int32_t i = 0; i < n_pes; ++i) {
       hosts.push_back(std::make_unique<PartHost>(*this, PeId{i}));
-      of_pes.push_back(std::make_unique<SectionReduction>(*hosts.back(), ledgers.at(PeId{i}),
-                                                          PeId{i}, root, n_pes));
+      of_pes.push_back(std::make_unique<ReductionTree>(
+          *hosts.back(), ledgers.at(PeId{i}), PeId{i}, root, n_pes,
+          TreeWords{"test", [](std::uint32_t) { return "others"; }}, MembersOf::section));
     }
   }
   [[nodiscard]] PeId any_pe() { return any_of(static_cast<std::int32_t>(of_pes.size())); }
-  [[nodiscard]] SectionReduction& part(PeId pe) {
-    return *of_pes[static_cast<std::size_t>(pe.value)];
+  [[nodiscard]] ReductionTree& part(PeId pe) { return *of_pes[static_cast<std::size_t>(pe.value)]; }
+  /// What waits on all PEs, in words.
+  [[nodiscard]] std::vector<std::string> waiting() const {
+    std::vector<std::string> lines;
+    for (const auto& part : of_pes) part->describe_waiting(lines);
+    return lines;
   }
   [[nodiscard]] PartHost& host(PeId pe) { return *hosts[static_cast<std::size_t>(pe.value)]; }
   [[nodiscard]] static EpochId epoch(std::uint32_t number, int which) {
@@ -67,10 +80,7 @@ class Parts {
     alive.insert(n_members);
     enter(pe, Participant{n_members++, 0});
   }
-  void begin() {
-    total.begin(static_cast<std::uint64_t>(n_members));
-    deliver_complete();
-  }
+  void begin() { part(root).begin(static_cast<std::uint64_t>(n_members)); }
   void step(double disturbance) {
     const PeId pe = any_pe();
     std::vector<Participant>& members = host(pe).members;
@@ -109,19 +119,13 @@ class Parts {
   void end() {
     ended = true;
     for (const auto& part : of_pes) part->end();
-    total.end(ledgers.at(root));
     while (!bag.empty()) bag.deliver_one();
-  }
-
-  void deliver_complete() {
-    for (Gathered whole; total.take(whole); whole = {}) deliver(std::move(whole));
   }
 
   Bag bag;
   Ledgers ledgers;
   std::vector<std::unique_ptr<PartHost>> hosts;
-  std::vector<std::unique_ptr<SectionReduction>> of_pes;
-  SectionTotal total;
+  std::vector<std::unique_ptr<ReductionTree>> of_pes;
   const std::size_t n_wanted;
   const PeId root;
   std::set<int> alive;
@@ -132,6 +136,7 @@ class Parts {
   bool ended = false;
 
  private:
+  friend class PartHost;
   [[nodiscard]] PeId any_of(std::int32_t n_pes) {
     return PeId{static_cast<std::int32_t>(bag.random.below(static_cast<std::uint64_t>(n_pes)))};
   }
@@ -159,9 +164,7 @@ class Parts {
     const Participant member = leave(pe, at);
     alive.erase(member.id);
     bag.post([this, next = member.next] {
-      if (ended) return;
-      total.remove_member(next);
-      deliver_complete();
+      if (!ended) part(root).member_destroyed(next);
     });
   }
   void contribute(PeId pe, Participant& member) {
@@ -170,61 +173,76 @@ class Parts {
     const EpochId in = epoch(one_epoch ? 0 : number, bag.random.chance(0.2) ? 1 : 0);
     if (Partial* open = part(pe).open_sum(number, Givers::its_kind(), in); open != nullptr) {
       static_cast<Givers*>(open)->ids.push_back(member.id);
-      part(pe).added(number);
+      part(pe).added(number, {});
     } else {
       part(pe).contribute(number, in, std::make_unique<Givers>(member.id));
     }
   }
-  void deliver(Gathered&& whole) {
+  void deliver(Partial& result) {
     const auto number = static_cast<std::uint32_t>(n_results++);
     REQUIRE(number < n_wanted);
-    auto ids = static_cast<Givers&>(*whole.value.held).ids;
+    auto ids = static_cast<Givers&>(result).ids;
     auto expected = given[number];
     std::sort(ids.begin(), ids.end());
     std::sort(expected.begin(), expected.end());
     REQUIRE(ids == expected);
-    REQUIRE(whole.n == expected.size());
     for (const int id : alive) REQUIRE(std::binary_search(ids.begin(), ids.end(), id));
     if (!one_epoch) REQUIRE(n_open(number) == expected.size());
-    settle(ledgers.at(root), whole.shares);
-    if (!one_epoch) REQUIRE(n_open(number) == 0);
+    if (!one_epoch && number > 0) REQUIRE(n_open(number - 1) == 0);
   }
   [[nodiscard]] std::uint64_t n_open(std::uint32_t number) {
     return ledgers.n_open(epoch(number, 0)) + ledgers.n_open(epoch(number, 1));
   }
 };
 
-void PartHost::send(PeId to, SectionReport&& report) {
-  ++parts_.n_reports;
-  const auto held = std::make_shared<SectionReport>(std::move(report));
+void PartHost::send(PeId to, ReductionReport&& report) {
+  using What = ReductionReport::What;
+  const bool attaches = report.what == What::attached || report.what == What::detached;
+  ++(attaches ? parts_.n_attaches : parts_.n_reports);
+  const auto held = std::make_shared<ReductionReport>(std::move(report));
   REQUIRE(held->child == here_);
   parts_.bag.post([&parts = parts_, to, held] {
     if (parts.ended) {
-      settle(parts.ledgers.at(to), held->gathered.shares);
+      settle(parts.ledgers.at(to), held->sum.shares);
     } else {
       parts.part(to).on_report(std::move(*held));
     }
   });
 }
-void PartHost::send(PeId to, const SectionAttach& attach) {
-  ++parts_.n_attaches;
-  parts_.bag.post([&parts = parts_, to, attach] {
-    if (!parts.ended) parts.part(to).on_attach(attach);
-  });
-}
-void PartHost::arrived(std::uint32_t number, Gathered&& gathered) {
+void PartHost::deliver(Partial& result, EpochId /*epoch*/) {
   REQUIRE(here_ == parts_.root);
-  parts_.total.arrived(number, std::move(gathered));
-  parts_.deliver_complete();
+  parts_.deliver(result);
 }
 
-Gathered contributions(std::uint64_t n) {
-  Gathered some;
-  test::Ledger of_none;
-  some.add(of_none.completion, EpochId{}, std::make_unique<Givers>(static_cast<int>(n)));
-  some.n = n;
-  return some;
-}
+/// The root of a section without members on its PE, and the contributors to its results.
+class Root final : public SectionHost {
+ public:
+  Root()
+      : tree(*this, ledger.completion, PeId{0}, PeId{0}, 1,
+             TreeWords{"test", [](std::uint32_t) { return std::string(); }}, MembersOf::section) {}
+  using SectionHost::send;
+  void send(PeId /*to*/, ReductionReport&& /*report*/) override { FAIL("the root reports"); }
+  void deliver(Partial& result, EpochId /*epoch*/) override {
+    results.push_back(static_cast<Givers&>(result).ids);
+  }
+
+  /// Contributions of so many members arrive.
+  void arrive(std::uint32_t number, int n) {
+    ReductionReport late{ReductionReport::What::late, PeId{1}, {}, number, {}};
+    for (int id = 0; id < n; ++id)
+      late.sum.add(ledger.completion, EpochId{}, std::make_unique<Givers>(id));
+    tree.on_report(std::move(late));
+  }
+  [[nodiscard]] std::vector<std::string> waiting() const {
+    std::vector<std::string> lines;
+    tree.describe_waiting(lines);
+    return lines;
+  }
+
+  std::vector<std::vector<int>> results;
+  test::Ledger ledger;
+  ReductionTree tree;
+};
 
 }  // namespace
 
@@ -246,9 +264,7 @@ TEST_CASE("a section reduction has each member's contribution once, wherever mem
     while ((parts.n_results < parts.n_wanted || !parts.bag.empty()) && ++n_steps < 100'000)
       parts.step(0);
     REQUIRE(parts.n_results == parts.n_wanted);
-    for (const auto& part : parts.of_pes) REQUIRE(part->n_waiting() == 0);
-    SectionTotal::Incomplete found;
-    REQUIRE_FALSE(parts.total.first_incomplete(found));
+    REQUIRE(parts.waiting().empty());
     for (std::uint32_t number = 0; number < parts.n_wanted; ++number)
       for (const int which : {0, 1})
         REQUIRE(parts.ledgers.n_open(Parts::epoch(number, which)) == 0);
@@ -305,7 +321,8 @@ TEST_CASE("a section that ends settles the contributions that are under way",
     parts.end();
     for (std::uint32_t number = 0; number < parts.n_wanted; ++number)
       for (const int which : {0, 1}) CHECK(parts.ledgers.n_open(Parts::epoch(number, which)) == 0);
-    for (const auto& part : parts.of_pes) CHECK(part->n_waiting() == 0);
+    for (const std::string& line : parts.waiting())
+      CHECK(line.find("contribution") == std::string::npos);
   }
 }
 
@@ -317,13 +334,14 @@ TEST_CASE("contributions wait on their PE for a member that has yet to contribut
   parts.add(other);
   parts.begin();
   while (!parts.bag.empty()) parts.bag.deliver_one();
-  SectionReduction& part = parts.part(other);
+  ReductionTree& part = parts.part(other);
   part.contribute(0, Parts::epoch(0, 0), std::make_unique<Givers>(0));
-  CHECK(part.n_waiting() == 1);
+  CHECK(parts.waiting() == std::vector<std::string>{text("test 0 has 1 contribution on ", other,
+                                                         "; it waits for others")});
   CHECK(parts.n_reports == 0);
   parts.given[0] = {0, 1};
   part.contribute(0, Parts::epoch(0, 0), std::make_unique<Givers>(1));
-  CHECK(part.n_waiting() == 0);
+  CHECK(parts.waiting().empty());
   CHECK(parts.n_reports == 1);
   while (!parts.bag.empty()) parts.bag.deliver_one();
   CHECK(parts.n_results == 1);
@@ -331,55 +349,43 @@ TEST_CASE("contributions wait on their PE for a member that has yet to contribut
 
 TEST_CASE("no reduction of a section is complete before its list is known",
           "[runtime][collections][section_reduction]") {
-  SectionTotal total;
-  Gathered whole;
-  total.arrived(0, contributions(2));
-  CHECK_FALSE(total.take(whole));
-  total.begin(2);
-  CHECK(total.take(whole));
-  CHECK(whole.n == 2);
-  CHECK_FALSE(total.take(whole));
+  Root root;
+  root.arrive(0, 2);
+  CHECK(root.results.empty());
+  CHECK_FALSE(root.tree.is_empty());
+  root.tree.begin(2);
+  CHECK(root.results == std::vector<std::vector<int>>{{0, 1}});
+  CHECK_FALSE(root.tree.is_empty());
 }
 
 TEST_CASE("the reductions of a section are complete in their order",
           "[runtime][collections][section_reduction]") {
-  SectionTotal total;
-  Gathered whole;
-  total.begin(2);
-  total.arrived(1, contributions(2));
-  CHECK_FALSE(total.take(whole));
-  total.arrived(0, contributions(2));
-  CHECK(total.take(whole));
-  whole = {};
-  CHECK(total.take(whole));
-  CHECK_FALSE(total.take(whole));
+  Root root;
+  root.tree.begin(2);
+  root.arrive(1, 2);
+  CHECK(root.results.empty());
+  root.arrive(0, 2);
+  CHECK(root.results.size() == 2);
 }
 
 TEST_CASE("a destroyed member is missing from its next reduction on",
           "[runtime][collections][section_reduction]") {
-  SectionTotal total;
-  Gathered whole;
-  total.begin(3);
-  total.arrived(1, contributions(2));
-  total.arrived(0, contributions(2));
-  CHECK_FALSE(total.take(whole));  // number 0 comes first, and has two of three
-  SectionTotal::Incomplete found;
-  CHECK(total.first_incomplete(found));
-  CHECK(found.number == 0);
-  CHECK(found.n == 2);
-  CHECK(found.n_members == 3);
-  total.remove_member(1);
-  CHECK_FALSE(total.take(whole));  // it is still a member of 0
-  total.arrived(0, contributions(1));
-  CHECK(total.take(whole));
-  CHECK(whole.n == 3);
-  whole = {};
-  CHECK(total.take(whole));
-  CHECK(whole.n == 2);
-  total.remove_member(2);
-  total.arrived(2, contributions(1));
-  whole = {};
-  CHECK(total.take(whole));
-  CHECK(whole.n == 1);
-  CHECK_FALSE(total.first_incomplete(found));
+  Root root;
+  root.tree.begin(3);
+  root.arrive(1, 2);
+  root.arrive(0, 2);
+  CHECK(root.results.empty());  // number 0 comes first, and has two of three
+  CHECK(root.waiting().front() == "test 0 has 2 contributions of 3 members");
+  root.tree.member_destroyed(1);
+  CHECK(root.results.empty());  // it is still a member of 0
+  CHECK(root.waiting().back() == "test 1 has 2 contributions of 2 members");
+  root.arrive(0, 1);
+  CHECK(root.results == std::vector<std::vector<int>>{{0, 1, 0}, {0, 1}});
+  root.tree.member_destroyed(2);
+  root.arrive(2, 1);
+  CHECK(root.results.size() == 3);
+  CHECK(root.waiting().empty());
+  CHECK_FALSE(root.tree.is_empty());
+  root.tree.member_destroyed(3);
+  CHECK(root.tree.is_empty());
 }
