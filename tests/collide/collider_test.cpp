@@ -193,7 +193,7 @@ Task collide_rounds(Problem& problem) {
     fixture.collider.destroy();
     fixture.clients.destroy();
   });
-  problem.n_left = current_pe().collections().size();
+  problem.n_left = current_pe().collections().all().size();
 }
 
 /// The objects are submitted in the epoch that creates the collider.

@@ -24,7 +24,7 @@ std::vector<std::string> HangWatch::look(Clock::time_point now) {
   const PeId first = runtime_.machine().first_pe(runtime_.machine().process());
   for (std::size_t i = 0; i < n_entered_.size(); ++i) {
     const PeId pe{first.value + static_cast<std::int32_t>(i)};
-    const std::uint64_t n = runtime_.pe(pe).watch()->n_entered();
+    const std::uint64_t n = runtime_.pe(pe).measuring().watch()->n_entered();
     if (n != n_entered_[i]) {
       n_entered_[i] = n;
       named_[i] = false;

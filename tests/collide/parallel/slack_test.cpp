@@ -165,7 +165,7 @@ Task end(const Movers& movers, Outcome& outcome) {
     movers.collider.destroy();
     movers.clients.destroy();
   });
-  outcome.n_left = current_pe().collections().size();
+  outcome.n_left = current_pe().collections().all().size();
 }
 
 ColliderOptions with_slack(const Moving& scene) {
