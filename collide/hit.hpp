@@ -1,6 +1,6 @@
-// The input and the output of a collision. An Item is a box with the id of the object that it
-// bounds; a Hit is a pair of ids. Both are plain bytes without padding, so messages and hashes of
-// them are exact. The collision uses only the model of an id; owner and number are opaque to it.
+// The ids of the objects of a collision, and the rules for its pairs. An Item is a box with the id of
+// the object that it bounds: plain bytes without padding, so messages and hashes of it are exact.
+// The collision uses only the model of an id; owner and number are opaque to it.
 #pragma once
 
 #include "collide/box.hpp"
@@ -34,17 +34,8 @@ struct Item {
   ObjectId id;
 };
 
-/// Two objects whose boxes overlap. Their order has no meaning.
-struct Hit {
-  ObjectId first;
-  ObjectId second;
-
-  friend auto operator<=>(const Hit&, const Hit&) = default;
-};
-
 static_assert(std::is_trivially_copyable_v<Item> && sizeof(Item) == 64);
-static_assert(std::is_trivially_copyable_v<Hit> && sizeof(Hit) == 32);
-static_assert(std::has_unique_object_representations_v<Hit>);
+static_assert(std::has_unique_object_representations_v<ObjectId>);
 
 /// Whether pairs within one model are tested: everywhere, unless a caller says `skip`.
 enum class WithinModel { skip, test };

@@ -1,7 +1,7 @@
 #include "collide/parallel/voxel_sort.hpp"
 
+#include "collide/problem/corners.hpp"
 #include "collide/problem/survey.hpp"
-#include "collide/problem/wide.hpp"
 #include "runtime/core/uninitialised.hpp"
 
 #include <algorithm>

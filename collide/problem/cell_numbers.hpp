@@ -5,7 +5,6 @@
 // on the input.
 #pragma once
 
-#include "collide/hit.hpp"
 #include "collide/problem/voxel_grid.hpp"
 #include "runtime/core/algorithm.hpp"
 
@@ -15,17 +14,6 @@
 #include <vector>
 
 namespace tess::collide::search {
-
-/// The cells that the box of an item touches. Throws Error with the item if its box is not valid,
-/// or if a coordinate exceeds the range of cell indices.
-[[nodiscard]] inline CellRange cells_of(const Item& item, const VoxelGrid& grid) {
-  CellRange range;
-  if (!grid.find_cells(item.box, range)) [[unlikely]] {
-    check_boxes({&item, 1});
-    range = grid.cells_of(item.box);  // throws
-  }
-  return range;
-}
 
 class CellNumbers {
  public:

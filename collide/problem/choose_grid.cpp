@@ -2,7 +2,7 @@
 
 #include "collide/problem/costs.hpp"
 #include "collide/problem/instantiate.hpp"
-#include "collide/problem/wide.hpp"
+#include "runtime/core/simd.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -137,7 +137,7 @@ Choice<D> GridChooser<Real, D>::choose_again(const Problem<Real, D>& problem,
   const Real widest = widest_of(region);
   const auto n_a = scale * static_cast<double>(problem.a.size());
   const auto n_b = scale * static_cast<double>(problem.b.size());
-  const double lanes = Wide<Real>::width;
+  constexpr double lanes = simd::widest / sizeof(Real);
   const auto cost_of = [&](double in_a, double in_b, const Sharing& sharing) {  // entries of each
     const double partners =
         (problem.within_a ? in_a * sharing.within_a / 2 : 0) + in_b * sharing.with_b;

@@ -2,15 +2,16 @@
 // at a time. The memory is kept from voxel to voxel.
 //
 // All pairs of up to some hundred boxes cost less than sorting them: 128 boxes take 4 vector
-// comparisons a box.
+// comparisons a box. Vectors only compare numbers, so every instruction set gives the same bits (a
+// test compares them with loops).
 #pragma once
 
 #include "collide/box.hpp"
 #include "collide/problem/entry.hpp"
 #include "collide/problem/scratch.hpp"
-#include "collide/problem/wide.hpp"
 #include "collide/search/pair_buffer.hpp"
 #include "runtime/core/algorithm.hpp"
+#include "runtime/core/simd.hpp"
 
 #include <limits>
 
@@ -18,9 +19,11 @@ namespace tess::collide::search {
 
 template <class Real, std::size_t D>
 class Lanes {
+  using Register = simd::Vector<Real, simd::widest / sizeof(Real)>;
+  using Numbers = simd::Vector<std::uint32_t, simd::widest / sizeof(Real)>;
+
  public:
-  using Vector = Wide<Real>;
-  static constexpr std::size_t width = Vector::width;
+  static constexpr std::size_t width = simd::widest / sizeof(Real);
 
   /// Makes room for `n` boxes, followed by a vector of boxes that overlap nothing.
   void resize(std::size_t n) {
@@ -56,15 +59,15 @@ class Lanes {
 
   /// The box at a position, to be compared with others.
   struct Probe {
-    typename Vector::Register lo[D], hi[D];
+    Register lo[D], hi[D];
     Entry entry;
     std::uint32_t model;
   };
   [[nodiscard, gnu::always_inline]] Probe probe(std::size_t i) const noexcept {
     Probe out{{}, {}, static_cast<Entry>(entry_[i]), model_[i]};
     for (std::size_t k = 0; k < D; ++k) {
-      out.lo[k] = Vector::all(lo_[k][i]);
-      out.hi[k] = Vector::all(hi_[k][i]);
+      out.lo[k] = simd::all<Register>(lo_[k][i]);
+      out.hi[k] = simd::all<Register>(hi_[k][i]);
     }
     return out;
   }
@@ -72,8 +75,8 @@ class Lanes {
                                                        std::uint32_t model) noexcept {
     Probe out{{}, {}, entry, model};
     for (std::size_t k = 0; k < D; ++k) {
-      out.lo[k] = Vector::all(box.lo[k]);
-      out.hi[k] = Vector::all(box.hi[k]);
+      out.lo[k] = simd::all<Register>(box.lo[k]);
+      out.hi[k] = simd::all<Register>(box.hi[k]);
     }
     return out;
   }
@@ -93,28 +96,31 @@ class Lanes {
                                       PairBuffer& out) const {
     std::uint32_t* next = out.next();
     std::size_t j = begin / width * width;
-    Mask among = all_lanes << (begin - j);
+    simd::Bits among = all_lanes << (begin - j);
     for (; j < end; j += width, among = all_lanes) {
-      Mask hits = among;
+      simd::Bits hits = among;
       for (std::size_t k = 0; k < D; ++k) {
-        const auto other_lo = Vector::load(lo_[k] + j), other_hi = Vector::load(hi_[k] + j);
+        const auto other_lo = simd::load<Register>(lo_[k] + j),
+                   other_hi = simd::load<Register>(hi_[k] + j);
         if constexpr (touching == Touching::counts) {
-          hits = Vector::template less<true>(hits, Vector::greater(probe.lo[k], other_lo),
-                                             Vector::lesser(probe.hi[k], other_hi));
+          hits = simd::less<true>(hits, simd::max(probe.lo[k], other_lo),
+                                  simd::min(probe.hi[k], other_hi));
         } else {
-          hits = Vector::template less<false>(hits, other_lo, probe.hi[k]);
-          hits = Vector::template less<false>(hits, probe.lo[k], other_hi);
+          hits = simd::less<false>(hits, other_lo, probe.hi[k]);
+          hits = simd::less<false>(hits, probe.lo[k], other_hi);
         }
       }
-      hits = Vector::disjoint(hits, entry_ + j, below_of(probe.entry));
-      if constexpr (by_model) hits = Vector::differ(hits, model_ + j, probe.model);
-      next = Vector::compress(next, hits, entry_ + j);
+      const auto entries = simd::load<Numbers>(entry_ + j);
+      hits = simd::disjoint(hits, entries, simd::all<Numbers>(below_of(probe.entry)));
+      if constexpr (by_model)
+        hits = simd::differ(hits, simd::load<Numbers>(model_ + j), simd::all<Numbers>(probe.model));
+      next = simd::compress(next, hits, entries >> 4);
     }
-    out.template added<Vector>(object_of(probe.entry), next);
+    out.template added<width>(object_of(probe.entry), next);
   }
 
  private:
-  static constexpr Mask all_lanes = static_cast<Mask>((std::uint64_t{1} << width) - 1);
+  static constexpr simd::Bits all_lanes = static_cast<simd::Bits>((std::uint64_t{1} << width) - 1);
 
   std::array<Real*, D> lo_{}, hi_{};
   std::uint32_t *entry_ = nullptr, *model_ = nullptr;

@@ -4,7 +4,7 @@
 
 #include "collide/pairs.hpp"
 #include "collide/problem/scratch.hpp"
-#include "collide/problem/wide.hpp"
+#include "runtime/core/simd.hpp"
 
 namespace tess::collide::search {
 
@@ -25,10 +25,12 @@ class PairBuffer {
   }
   /// Where the partners of the next object go; then added(object, their end).
   [[nodiscard]] std::uint32_t* next() noexcept { return partners_.data() + n_; }
-  template <class Vector>
+  /// The boxes were compared `width` at a time.
+  template <std::size_t width>
   void added(std::uint32_t object, const std::uint32_t* end) noexcept {
     const auto n = static_cast<std::size_t>(end - partners_.data());
-    for (std::size_t i = n_; i < n; i += Vector::width) Vector::fill(objects_.data() + i, object);
+    const auto objects = simd::all<simd::Vector<std::uint32_t, width>>(object);
+    for (std::size_t i = n_; i < n; i += width) simd::store(objects_.data() + i, objects);
     n_ = n;
   }
   void flush() {

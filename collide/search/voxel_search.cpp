@@ -1,5 +1,6 @@
 #include "collide/search/voxel_search.hpp"
 
+#include "collide/problem/corners.hpp"
 #include "collide/problem/costs.hpp"
 #include "collide/problem/instantiate.hpp"
 
