@@ -13,6 +13,7 @@ namespace tess::detail {
 
 Waits Pe::census(std::span<void* const> except) const {
   Waits waits;
+  waits.audit = audit_rows();
   const ElementWords& words = runtime_.element_words();
   for (const Suspended* at = suspended_.first(); at != nullptr; at = at->after) {
     const Suspended& one = *at;
