@@ -200,13 +200,9 @@ class Monitor::Loop {
   void serve(const MonitorOptions& options) {
     board_.emplace(machine_);
     Server::Source source;
-    source.past = [this] {
+    source.past = [this](const Topic& topic) {
       const std::lock_guard lock(mutex_);
-      return board_->past();
-    };
-    source.past_heat = [this](const HeatMapId& id) {
-      const std::lock_guard lock(mutex_);
-      return board_->past_heat(id);
+      return board_->past(topic);
     };
     source.ask_report = [this] {
       runtime_.service().report_job([reported = reported_](std::string&& text) {
@@ -243,7 +239,6 @@ class Monitor::Loop {
   }
   void publish() {
     std::vector<Event> events;
-    std::vector<std::pair<HeatMapId, Event>> heat;
     {
       const std::lock_guard lock(mutex_);
       if (closed_) return;
@@ -254,7 +249,6 @@ class Monitor::Loop {
             const Action* action = runtime_.pe(pe).running();
             return action != nullptr ? plain_name(action->name()) : std::string();
           });
-      heat = board_->take_heat_events();
     }
     {
       const std::lock_guard lock(reported_->mutex);
@@ -262,7 +256,6 @@ class Monitor::Loop {
       reported_->text.reset();
     }
     server_->publish(events);
-    for (const auto& [id, event] : heat) server_->publish(id, event);
   }
 
   Runtime& runtime_;
