@@ -14,6 +14,7 @@ namespace tess::detail {
 
 Waits census(Pe& pe, std::span<void* const> except) {
   Waits waits;
+  waits.audit = pe.measuring().audit_rows();
   const ElementWords& words = pe.runtime().element_words();
   for (const Suspended* at = pe.suspended().first(); at != nullptr; at = at->after) {
     const Suspended& one = *at;

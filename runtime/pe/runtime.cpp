@@ -154,8 +154,9 @@ int Runtime::run() {
           ? "tessera: no message is under way, but the run has not ended: this is a bug of the "
             "runtime"
           : "tessera: " + gave_up;
+  const std::string audit = audit_text(still_.audit, [](PeId) { return true; });
   if (!still_.empty()) report += "; " + list_of_waiting(std::move(still_));
-  error_line(report + audit_text(still_counted_, [](PeId) { return true; }));
+  error_line(report + audit);
   return 3;
 }
 
@@ -164,7 +165,7 @@ void Runtime::start(PeId id) {
   Pe& pe0 = pe(id);
   const RunsOn here(pe0);
   send_system<&main_program>(pe0, id, Nothing{});
-  if (options_.hang_report.count() != 0 && machine_.virtual_time()) start_virtual_watch(pe0);
+  if (service_ != nullptr) service_->begins(pe0);
 }
 
 void Runtime::run_main(Pe& pe) {
@@ -180,11 +181,7 @@ void Runtime::placed(PeId id, Link* message) {
 void Runtime::finish(PeId id) {
   const RunsOn here(pe(id));
   if (options_.statistics) print_statistics(id);
-  if (!left_) {
-    still_.merge(census(pe(id)));
-    const std::vector<AuditRow> rows = pe(id).measuring().audit_rows();
-    still_counted_.insert(still_counted_.end(), rows.begin(), rows.end());
-  }
+  if (!left_) still_.merge(census(pe(id)));
   pe(id).drop_all();
 }
 
@@ -333,13 +330,12 @@ void Runtime::on_census_asked(Pe& pe) {
   send_uncounted<&census_arrives>(
       pe, PeId{0},
       Census{census(pe), pe.statistics().dead_letters, std::move(empty), pe.stopped(),
-             pe.completion().run_sent(), pe.timers().n_periodic(), pe.measuring().audit_rows()});
+             pe.completion().run_sent(), pe.timers().n_periodic()});
 }
 
 void Runtime::on_census(Pe& pe, Census&& census) {
   if (stopping_) return;  // exit() was called meanwhile; it counts its own answers
   census_.waits.merge(std::move(census.waits));
-  census_.audit.insert(census_.audit.end(), census.audit.begin(), census.audit.end());
   census_.dead_letters += census.dead_letters;
   for (EmptyArray& array : census.empty)
     if (array.id == CollectionId{} || ++empty_on_[array.id] == pe.n_pes())

@@ -19,7 +19,6 @@
 #include "runtime/pe/interfaces/process_service.hpp"
 #include "runtime/pe/interfaces/runtime_options.hpp"
 #include "runtime/pe/pe.hpp"
-#include "runtime/watch/report/audit.hpp"
 #include "runtime/watch/report/waiting.hpp"
 #include "runtime/wire/machine/machine.hpp"
 
@@ -37,8 +36,6 @@ namespace tess::detail {
 
 /// "12 s", with three digits.
 [[nodiscard]] std::string seconds_text(double seconds);
-/// The beginning of a report of a hang.
-[[nodiscard]] std::string hang_heading(Time idle);
 
 /// The words for an element in reports. The layer that defines elements provides the functions.
 struct ElementWords {
@@ -156,7 +153,6 @@ class Runtime final : public Program {
     bool exits = false;  // exit() was called: its message is under way, not counted in epoch 0
     std::uint64_t n_sent = 0;  // messages of epoch 0 that this PE has sent; its timers are frozen
     std::uint64_t n_periodic = 0;  // timers
-    std::vector<AuditRow> audit;
   };
   void run_main(Pe& pe);
   void on_exit_asked(Pe& pe, int code, int signal);
@@ -165,13 +161,10 @@ class Runtime final : public Program {
   void on_leave(int code);
   void on_census_asked(Pe& pe);
   void on_census(Pe& pe, Census&& census);
-  void on_virtual_tick(Pe& pe, std::uint64_t n_before, std::int64_t since_ns, std::uint32_t n_late);
 
  private:
   /// All processes of a job that cannot run call it: process 0 prints why. Returns the exit code.
   [[nodiscard]] int refuse_job(std::string_view why);
-  void start_virtual_watch(Pe& pe);
-  void report_virtual_hang(Time now, Time idle);
   void end_with(Pe& pe, int code, int signal = 0);
   /// Reports what waits at the end of the run, and ends it.
   void end_with_census(Pe& pe);
@@ -196,7 +189,6 @@ class Runtime final : public Program {
   std::atomic<bool> left_{false};
   std::atomic<bool> said_bad_input_{false}, said_out_of_memory_{false};
   Waits still_;  // simulated machine: what waits if nothing can run
-  std::vector<AuditRow> still_counted_;
 
   // Only on PE 0.
   bool stopping_ = false;

@@ -13,6 +13,8 @@
 
 namespace tess::detail {
 
+class Pe;
+
 class ProcessService {
  public:
   ProcessService() = default;
@@ -20,6 +22,8 @@ class ProcessService {
   ProcessService& operator=(const ProcessService&) = delete;
   virtual ~ProcessService() = default;
 
+  /// The run begins. Called on PE 0.
+  virtual void begins(Pe& pe) = 0;
   /// Posts a message to a PE of this process once the delay is over; takes ownership. Any PE
   /// thread.
   virtual void post_after(PeId to, Envelope* message, Time delay) = 0;

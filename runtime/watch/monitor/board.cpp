@@ -82,10 +82,19 @@ std::vector<Event> Board::take_events(double seconds,
   for (auto& [name, picture] : pictures_) {
     if (std::exchange(picture.changed, false)) events.push_back(event_of(name, picture));
   }
+  for (auto& [id, heat] : heat_) {
+    if (auto event = heat.map.take_event(name_of(id.array)))
+      events.push_back({"heat", std::move(*event), id});
+  }
   return events;
 }
 
-std::vector<Event> Board::past() const {
+std::vector<Event> Board::past(const Topic& topic) const {
+  if (topic) {
+    const auto at = heat_.find(*topic);
+    if (at == heat_.end() || at->second.map.last_event().empty()) return {};
+    return {{"heat", at->second.map.last_event(), topic}};
+  }
   std::vector<Event> events(past_.begin(), past_.end());
   for (const auto& [name, picture] : pictures_) events.push_back(event_of(name, picture));
   return events;
@@ -108,21 +117,6 @@ std::vector<HeatQuery> Board::heat_queries() const {
 void Board::take(HeatCells&& part) {
   const auto at = heat_.find(part.of.map);
   if (at != heat_.end() && at->second.watch == part.of.watch) at->second.map.take(std::move(part));
-}
-
-std::vector<std::pair<HeatMapId, Event>> Board::take_heat_events() {
-  std::vector<std::pair<HeatMapId, Event>> events;
-  for (auto& [id, heat] : heat_) {
-    if (auto event = heat.map.take_event(name_of(id.array)))
-      events.push_back({id, {"heat", std::move(*event)}});
-  }
-  return events;
-}
-
-std::vector<Event> Board::past_heat(const HeatMapId& id) const {
-  const auto at = heat_.find(id);
-  if (at == heat_.end() || at->second.map.last_event().empty()) return {};
-  return {{"heat", at->second.map.last_event()}};
 }
 
 std::string Board::name_of(CollectionId id) const {

@@ -3,7 +3,9 @@
 //     frame    utilisation, rates, queues of each PE since the last frame; memory; chares; epochs
 //     round    a balance round
 //     picture  what the program draws
-//     heat     a heat map, for the browsers that watch it
+//     heat     a heat map, for the browsers that watch this one
+//     report   what waits, when a browser has asked (the monitor adds it)
+//     now      the end of what has been (the server adds it)
 //
 // It keeps the frames and rounds of the last minutes and the last picture of each name, for a
 // browser that comes late. Not for several threads at once.
@@ -18,16 +20,20 @@
 #include <deque>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace tess::detail {
+
+/// What a browser listens to: a heat map, or what all hear of the run.
+using Topic = std::optional<HeatMapId>;
 
 /// An event as browsers receive it: its kind, and one line of JSON.
 struct Event {
   std::string kind;
   std::string json;
+  Topic topic{};
 };
 
 class Board {
@@ -40,22 +46,19 @@ class Board {
   void note(const BalanceNote& note);
   /// False if it is left out, since the page has its most pictures.
   bool draw(const PicturePart& part);
-  /// The events since the last call, of which the last one is a frame. `runs(pe)` names the entry
-  /// method that a PE of this process runs, or nothing. `seconds` is the wall time of the run.
+  /// The events since the last call: rounds and a frame, then pictures, then heat maps. `runs(pe)`
+  /// names the entry method that a PE of this process runs, or nothing. `seconds` is the wall time
+  /// of the run.
   [[nodiscard]] std::vector<Event> take_events(double seconds,
                                                const std::function<std::string(PeId)>& runs);
   /// What a browser that comes now must know.
-  [[nodiscard]] std::vector<Event> past() const;
+  [[nodiscard]] std::vector<Event> past(const Topic& topic) const;
 
   /// These heat maps are watched from now on.
   void watch_heat(const std::vector<HeatMapId>& watched);
   /// What the PEs are to report for them.
   [[nodiscard]] std::vector<HeatQuery> heat_queries() const;
   void take(HeatCells&& part);
-  /// The new events of heat maps.
-  [[nodiscard]] std::vector<std::pair<HeatMapId, Event>> take_heat_events();
-  /// The last event of a heat map, for a browser that comes now.
-  [[nodiscard]] std::vector<Event> past_heat(const HeatMapId& id) const;
 
  private:
   struct OfPe {

@@ -55,21 +55,19 @@ std::optional<std::string> HeatMap::take_event(const std::string& name) {
 }
 
 std::string HeatMap::head(const std::string& name, const std::string& summary) const {
-  return fmt::format(R"({{"name":{},"by":"{}","width":{},"height":{},"summary":{},)",
-                     json_string(name), by_ == HeatBy::load ? "load" : "pe", grid_->width(),
-                     grid_->height(), json_string(summary));
+  return fmt::format(R"({{"name":{},"by":"{}","shape":[{}],"summary":{},)", json_string(name),
+                     by_ == HeatBy::load ? "load" : "pe", fmt::join(grid_->shape(), ","),
+                     json_string(summary));
 }
 
 std::string HeatMap::event_by_load(const std::string& name) const {
   // Per index, so that cells at the border, which hold fewer, compare.
   std::vector<double> load(load_.size());
   double most = 0, sum = 0;
-  std::size_t hottest = 0, n = 0, n_cold = 0;
+  std::size_t hottest = 0, n_cold = 0;
   for (std::size_t cell = 0; cell < load.size(); ++cell) {
     const std::uint64_t n_indices = grid_->n_indices(static_cast<std::uint32_t>(cell));
-    if (n_indices == 0) continue;
     load[cell] = load_[cell] / weight_ / static_cast<double>(n_indices);
-    ++n;
     sum += load[cell];
     if (load[cell] == 0) ++n_cold;
     if (load[cell] <= most) continue;
@@ -78,20 +76,14 @@ std::string HeatMap::event_by_load(const std::string& name) const {
   }
   std::string values;
   values.reserve(2 * load.size());
-  for (std::size_t cell = 0; cell < load.size(); ++cell) {
-    if (grid_->n_indices(static_cast<std::uint32_t>(cell)) == 0) {
-      values += "--";
-      continue;
-    }
-    add_level(values, most > 0 ? std::lround(255 * load[cell] / most) : 0);
-  }
+  for (const double one : load) add_level(values, most > 0 ? std::lround(255 * one / most) : 0);
   const std::string summary =
       most == 0 ? "no load was seen yet"
                 : fmt::format(
                       "hottest {}: {:.3g} % of a PE for each element, {:.3g} x the mean of "
                       "{} cells; {} without load",
                       grid_->text_of(static_cast<std::uint32_t>(hottest)), 100 * most,
-                      most * static_cast<double>(n) / sum, n, n_cold);
+                      most * static_cast<double>(load.size()) / sum, load.size(), n_cold);
   return head(name, summary) + fmt::format(R"("most":{:.4g},"values":"{}"}})", most, values);
 }
 

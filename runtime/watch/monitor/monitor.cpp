@@ -28,16 +28,12 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+/// A period begins on a PE, in which these heat maps are watched.
 struct SampleAsked {
   std::vector<HeatQuery> heat;
+  bool pictures = false;  // browsers watch them
 };
 struct WindowEnds {};
-/// Process 0 tells the others which heat maps are watched, and whether pictures are.
-struct HeatWanted {
-  std::uint64_t version = 0;  // newer ones are greater
-  std::vector<HeatQuery> queries;
-  bool pictures = false;
-};
 
 /// The parts of pictures that a PE has sent since its last sample. It ends a period early once all
 /// parts seem to be there: when for long each part that was shown had been sent. Every so many
@@ -80,13 +76,21 @@ bool is_on_process_0(Pe& pe) {
 }
 
 // The messages of the monitor; they call its loop, which is below.
-void heat_is_wanted(Pe& pe, HeatWanted&& wanted);
 void heat_arrives(Pe& pe, HeatCells&& part);
 void window_ends(Pe& pe, WindowEnds&& ends);
 void sample_is_asked(Pe& pe, SampleAsked&& asked);
 void sample_arrives(Pe& pe, PeSample&& sample);
 void part_arrives(Pe& pe, PicturePart&& part);
 void note_arrives(Pe& pe, BalanceNote&& note);
+
+/// Passes a payload to its handler on process 0; there at once.
+template <auto Handler>
+void to_process_0(Pe& pe, typename PeAction<Handler>::Payload&& payload) {
+  if (is_on_process_0(pe))
+    Handler(pe, std::move(payload));
+  else
+    send_uncounted<Handler>(pe, PeId{0}, std::move(payload));
+}
 
 }  // namespace
 
@@ -98,7 +102,9 @@ class Monitor::Loop {
         period_(std::chrono::milliseconds(options.period_ms)),
         began_(Clock::now()),
         of_pes_(static_cast<std::size_t>(machine_.n_pes_here())) {
-    if (machine_.process().value == 0) serve(options);
+    if (machine_.process().value != 0) return;
+    asked_.resize(static_cast<std::size_t>(machine_.n_pes()));
+    serve(options);
     timer_.expires_after(period_);
     wait();
     thread_ = std::thread([this] { io_.run(); });
@@ -107,58 +113,56 @@ class Monitor::Loop {
   Loop& operator=(const Loop&) = delete;
   ~Loop() {
     io_.stop();
-    thread_.join();
+    if (thread_.joinable()) thread_.join();
   }
 
   void close() {
     const std::lock_guard lock(mutex_);
     closed_ = true;
   }
-  /// A PE of this process has taken its sample.
-  void answered(Pe& pe, PeSample sample) {
-    {
-      const std::lock_guard lock(mutex_);
-      OfPe& of = of_pe(pe.id());
-      of.asked = false;
-      of.parts.begin_period(heat_.pictures);
-    }
-    if (is_on_process_0(pe)) return arrived(std::move(sample));
-    send_uncounted<&sample_arrives>(pe, PeId{0}, std::move(sample));
-  }
-  /// On process 0, as draw() and note().
-  void arrived(PeSample sample) {
-    const std::lock_guard lock(mutex_);
-    board_->arrived(std::move(sample));
-  }
-  /// A period of the heat maps begins on a PE of this process.
-  void begin_heat(Pe& pe, const std::vector<HeatQuery>& queries) {
-    std::unique_ptr<PeHeat>& heat = of_pe(pe.id()).heat;
-    if (!heat && queries.empty()) return;
-    if (!heat) heat = std::make_unique<PeHeat>(pe);
-    report_heat(pe, heat->begin(queries));
-    if (queries.empty()) heat.reset();
+
+  // On the thread of a PE, for that PE.
+
+  void begin_period(Pe& pe, const SampleAsked& asked) {
+    OfPe& of = of_pe(pe.id());
+    of.parts.begin_period(asked.pictures);
+    if (!of.heat && asked.heat.empty()) return;
+    if (!of.heat) of.heat = std::make_unique<PeHeat>(pe);
+    report_heat(pe, of.heat->begin(asked.heat));
+    if (asked.heat.empty()) of.heat.reset();
+    if (!of.heat || !of.heat->window_is_open() || machine_.virtual_time()) return;
+    auto* const message = make_message<&window_ends>(pe, WindowEnds{});
+    message->source = pe.id();
+    message->counted = false;
+    pe.post_after(std::max<Time>(period_ / 200, std::chrono::milliseconds(1)), message);
   }
   void end_heat_window(Pe& pe) {
     if (auto& heat = of_pe(pe.id()).heat) report_heat(pe, heat->end_window());
   }
+  [[nodiscard]] bool wants_part(const Pe& pe, std::string_view name, std::uint64_t part) {
+    return of_pe(pe.id()).parts.wants(name, part);
+  }
+
+  // On process 0, on the thread of a PE.
+
+  /// PE 0 asks the PEs of other processes.
+  void ask_others(Pe& pe, const SampleAsked& question) {
+    std::vector<PeId> others;
+    {
+      const std::lock_guard lock(mutex_);
+      for (std::int32_t to = machine_.n_pes_here(); to < machine_.n_pes(); ++to)
+        if (mark_asked(PeId{to})) others.push_back(PeId{to});
+    }
+    for (const PeId to : others) send_uncounted<&sample_is_asked>(pe, to, question);
+  }
+  void arrived(PeSample&& sample) {
+    const std::lock_guard lock(mutex_);
+    asked_.at(static_cast<std::size_t>(sample.pe.value)) = false;
+    board_->arrived(std::move(sample));
+  }
   void take(HeatCells&& part) {
     const std::lock_guard lock(mutex_);
     board_->take(std::move(part));
-  }
-  /// On process 0: what the other processes have not been told yet.
-  [[nodiscard]] std::optional<HeatWanted> heat_to_tell() {
-    const std::lock_guard lock(mutex_);
-    if (std::exchange(told_, heat_.version) == heat_.version) return std::nullopt;
-    return heat_;
-  }
-  /// On other processes.
-  void want_heat(HeatWanted&& wanted) {
-    const std::lock_guard lock(mutex_);
-    if (wanted.version > heat_.version) heat_ = std::move(wanted);
-  }
-  [[nodiscard]] bool wants_part(const Pe& pe, std::string_view name, std::uint64_t part) {
-    // Only this PE's thread uses its parts; answered() runs on the same thread.
-    return of_pe(pe.id()).parts.wants(name, part);
   }
   void draw(const PicturePart& part) {
     const std::lock_guard lock(mutex_);
@@ -174,36 +178,31 @@ class Monitor::Loop {
 
  private:
   struct OfPe {
-    bool asked = false;  // and has not answered yet
-    // Only its thread uses these.
     PartsOfPe parts;
     std::unique_ptr<PeHeat> heat;  // while heat maps are watched
   };
 
-  void report_heat(Pe& pe, std::vector<HeatCells>&& parts) {
-    for (HeatCells& part : parts) {
-      if (is_on_process_0(pe))
-        take(std::move(part));
-      else
-        send_uncounted<&heat_arrives>(pe, PeId{0}, std::move(part));
-    }
+  static void report_heat(Pe& pe, std::vector<HeatCells>&& parts) {
+    for (HeatCells& part : parts) to_process_0<&heat_arrives>(pe, std::move(part));
   }
-
-  [[nodiscard]] PeId first_pe() const { return machine_.first_pe(machine_.process()); }
   [[nodiscard]] OfPe& of_pe(PeId pe) {
-    return of_pes_.at(static_cast<std::size_t>(pe.value - first_pe().value));
+    const PeId first = machine_.first_pe(machine_.process());
+    return of_pes_.at(static_cast<std::size_t>(pe.value - first.value));
+  }
+  /// Marks that a PE is asked; false if it has not answered the last question yet. Under the lock.
+  [[nodiscard]] bool mark_asked(PeId pe) {
+    auto asked = asked_.at(static_cast<std::size_t>(pe.value));
+    const bool waits = asked;
+    asked = true;
+    return !waits;
   }
 
   void serve(const MonitorOptions& options) {
     board_.emplace(machine_);
     Server::Source source;
-    source.past = [this] {
+    source.past = [this](const Topic& topic) {
       const std::lock_guard lock(mutex_);
-      return board_->past();
-    };
-    source.past_heat = [this](const HeatMapId& id) {
-      const std::lock_guard lock(mutex_);
-      return board_->past_heat(id);
+      return board_->past(topic);
     };
     source.ask_report = [this] {
       runtime_.service().report_job([reported = reported_](std::string&& text) {
@@ -232,41 +231,14 @@ class Monitor::Loop {
   void ask() {
     const std::lock_guard lock(mutex_);
     if (closed_) return;
-    if (server_) watch_heat();
-    const bool by_load =
-        std::any_of(heat_.queries.begin(), heat_.queries.end(),
-                    [](const HeatQuery& query) { return query.map.by == HeatBy::load; });
-    std::vector<PeId> asked;
-    for (std::int32_t i = 0; i < machine_.n_pes_here(); ++i) {
-      const PeId to{first_pe().value + i};
-      if (std::exchange(of_pe(to).asked, true)) continue;
-      machine_.hand_in(to, make_outside<&sample_is_asked>(to, SampleAsked{heat_.queries}));
-      if (by_load) asked.push_back(to);
-    }
-    if (by_load) end_windows_later(std::move(asked));
-  }
-  void watch_heat() {
     board_->watch_heat(server_->watched());
-    std::vector<HeatQuery> queries = board_->heat_queries();
-    const bool pictures = server_->has_listeners();
-    if (queries == heat_.queries && pictures == heat_.pictures) return;
-    ++heat_.version;
-    heat_.queries = std::move(queries);
-    heat_.pictures = pictures;
-  }
-  void end_windows_later(std::vector<PeId> of) {
-    window_timer_.expires_after(
-        std::max<Clock::duration>(period_ / 200, std::chrono::milliseconds(1)));
-    window_timer_.async_wait([this, of = std::move(of)](const boost::system::error_code& error) {
-      const std::lock_guard lock(mutex_);
-      if (error || closed_) return;
-      for (const PeId to : of) machine_.hand_in(to, make_outside<&window_ends>(to, WindowEnds{}));
-    });
+    const SampleAsked question{board_->heat_queries(), server_->has_listeners()};
+    for (std::int32_t i = 0; i < machine_.n_pes_here(); ++i)
+      if (const PeId to{i}; mark_asked(to))
+        machine_.hand_in(to, make_outside<&sample_is_asked>(to, question));
   }
   void publish() {
-    if (!server_) return;
     std::vector<Event> events;
-    std::vector<std::pair<HeatMapId, Event>> heat;
     {
       const std::lock_guard lock(mutex_);
       if (closed_) return;
@@ -277,7 +249,6 @@ class Monitor::Loop {
             const Action* action = runtime_.pe(pe).running();
             return action != nullptr ? plain_name(action->name()) : std::string();
           });
-      heat = board_->take_heat_events();
     }
     {
       const std::lock_guard lock(reported_->mutex);
@@ -285,7 +256,6 @@ class Monitor::Loop {
       reported_->text.reset();
     }
     server_->publish(events);
-    for (const auto& [id, event] : heat) server_->publish(id, event);
   }
 
   Runtime& runtime_;
@@ -293,16 +263,16 @@ class Monitor::Loop {
   const Clock::duration period_;
   const Clock::time_point began_;
   const std::shared_ptr<Reported> reported_ = std::make_shared<Reported>();
-  std::mutex mutex_;  // guards what follows, but not what only a PE uses
-  std::vector<OfPe> of_pes_;
-  std::optional<Board> board_;  // on process 0
-  bool said_left_out_ = false;  // pictures
-  HeatWanted heat_;
-  std::uint64_t told_ = 0;  // the version that the other processes have been told
+  std::vector<OfPe> of_pes_;  // of this process; each is used by its PE only
+  std::mutex mutex_;          // guards what follows
   bool closed_ = false;
+  // On process 0.
+  std::vector<bool> asked_;  // by PE of the job: it has not answered yet
+  std::optional<Board> board_;
+  bool said_left_out_ = false;  // pictures
   boost::asio::io_context io_{1};
-  boost::asio::steady_timer timer_{io_}, window_timer_{io_};
-  std::optional<Server> server_;  // on process 0
+  boost::asio::steady_timer timer_{io_};
+  std::optional<Server> server_;
   std::thread thread_;
 };
 
@@ -312,9 +282,6 @@ Monitor::Loop& loop_of(Pe& pe) {
   return static_cast<Monitor&>(*pe.runtime().monitor()).loop();
 }
 
-void heat_is_wanted(Pe& pe, HeatWanted&& wanted) {
-  loop_of(pe).want_heat(std::move(wanted));
-}
 void heat_arrives(Pe& pe, HeatCells&& part) {
   loop_of(pe).take(std::move(part));
 }
@@ -324,15 +291,9 @@ void window_ends(Pe& pe, WindowEnds&& /*ends*/) {
 void sample_is_asked(Pe& pe, SampleAsked&& asked) {
   if (pe.stopped()) return;
   Monitor::Loop& loop = loop_of(pe);
-  if (pe.id().value == 0) {  // the other processes hear of it from PE 0
-    if (const auto wanted = loop.heat_to_tell()) {
-      for (std::int32_t first = pe.machine().n_pes_here(); first < pe.n_pes();
-           first += pe.machine().pes_per_process())
-        send_uncounted<&heat_is_wanted>(pe, PeId{first}, HeatWanted(*wanted));
-    }
-  }
-  loop.begin_heat(pe, asked.heat);
-  loop.answered(pe, sample_of(pe));
+  if (pe.id().value == 0) loop.ask_others(pe, asked);
+  loop.begin_period(pe, asked);
+  to_process_0<&sample_arrives>(pe, sample_of(pe));
 }
 void sample_arrives(Pe& pe, PeSample&& sample) {
   loop_of(pe).arrived(std::move(sample));
@@ -353,8 +314,7 @@ Monitor::Monitor(Runtime& runtime, const MonitorOptions& options)
 Monitor::~Monitor() = default;
 
 void Monitor::balanced(Pe& pe, BalanceNote note) {
-  if (is_on_process_0(pe)) return loop_->note(note);
-  send_uncounted<&note_arrives>(pe, PeId{0}, std::move(note));
+  to_process_0<&note_arrives>(pe, std::move(note));
 }
 void Monitor::close() {
   loop_->close();
@@ -364,8 +324,7 @@ bool Monitor::wants_part(const Pe& pe, std::string_view name, std::uint64_t part
 }
 
 void Monitor::draw(Pe& pe, PicturePart part) {
-  if (is_on_process_0(pe)) return loop_->draw(part);
-  send_uncounted<&part_arrives>(pe, PeId{0}, std::move(part));
+  to_process_0<&part_arrives>(pe, std::move(part));
 }
 
 namespace {

@@ -1,10 +1,10 @@
-// The monitor of a run (--monitor [ADDRESS:]PORT): each process asks its PEs for samples twice a
-// second; those of all processes meet in process 0, which serves a page that draws them.
+// The monitor of a run (--monitor [ADDRESS:]PORT): process 0 asks all PEs for samples twice a
+// second, and serves a page that draws them. Other processes have no thread for it.
 //
-//     thread of each process, every period:  asks each of its PEs that has answered the last time
-//     PE:         sample_of(pe)  ->  process 0: straight into the store
-//                                    others: by a message to PE 0, which puts it there
-//     thread of process 0, every period:     store -> frame -> all browsers (server.hpp)
+//     thread of process 0, every period:  asks each PE that has answered the last time: those of its
+//                                         process itself, the others by way of PE 0
+//     PE:                                 sample_of(pe) -> board of process 0
+//     thread of process 0, every period:  board -> frame -> all browsers (server.hpp)
 //
 // None of these messages is counted by an epoch, so the run ends as it would without them. A PE
 // that runs a long entry method answers when it is over; until then the page shows it as busy, with

@@ -102,8 +102,8 @@ void PeHeat::add(std::uint64_t ticks) {
 
 std::vector<HeatCells> PeHeat::end_window() {
   if (!open_) return {};
-  const bool is_short = spent_.empty() || pe_.machine().virtual_time() ||
-                        pe_.meter()->seconds(pe_.meter()->now() - began_) < shortest_window;
+  const bool is_short =
+      spent_.empty() || pe_.meter()->seconds(pe_.meter()->now() - began_) < shortest_window;
   if (listens_ && is_short) return {};
   return close_window();
 }

@@ -40,6 +40,9 @@ class PeHeat final : public ScopeListener {
   /// The window is over: returns what it measured, unless it stays open.
   [[nodiscard]] std::vector<HeatCells> end_window();
 
+  /// True while it measures load.
+  [[nodiscard]] bool window_is_open() const { return open_; }
+
   void changed(std::uint64_t at) override;
 
  private:

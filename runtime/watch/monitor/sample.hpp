@@ -14,11 +14,6 @@ struct CollectionSample {
   CollectionId id{};
   std::string name;
   std::uint64_t n_local = 0;
-
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(id, name, n_local);
-  }
 };
 
 struct PeSample {
@@ -30,13 +25,6 @@ struct PeSample {
   std::uint64_t n_epochs = 0;       ///< epochs that it keeps counters of
   std::uint64_t process_bytes = 0;  ///< memory of the process; only from the first PE of each
   std::vector<CollectionSample> collections;
-
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(pe, at_ns, idle_ns, counts.messages, counts.sent_remote, counts.bytes_sent, counts.forwards,
-       counts.migrations, counts.dead_letters, counts.late_replies, n_ready, n_epochs,
-       process_bytes, collections);
-  }
 };
 
 /// The present sample of a PE, on its thread.

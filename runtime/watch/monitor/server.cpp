@@ -19,7 +19,6 @@
 #include <chrono>
 #include <deque>
 #include <map>
-#include <optional>
 #include <string_view>
 #include <utility>
 
@@ -87,8 +86,11 @@ bool names_this_machine(std::string_view host) {
   return host == "localhost" || (!no_address && address.is_loopback());
 }
 
-/// A connection: one request and its answer, or a listener. It lives while an operation holds it.
-class Connection final : public Listener, public std::enable_shared_from_this<Connection> {
+}  // namespace
+
+/// A connection: one request and its answer, or a browser that listens. It lives while an operation
+/// holds it.
+class Connection final : public std::enable_shared_from_this<Connection> {
  public:
   Connection(Server& server, Tcp::socket socket) : server_(server), stream_(std::move(socket)) {
     parser_.body_limit(most_request);
@@ -103,7 +105,7 @@ class Connection final : public Listener, public std::enable_shared_from_this<Co
                      });
   }
 
-  void send(const std::shared_ptr<const std::string>& event) override {
+  void send(const std::shared_ptr<const std::string>& event) {
     if (waiting_.size() >= most_waiting) return;  // it reads slowly: this one it misses
     waiting_.push_back(event);
     if (waiting_.size() == 1) write_next();
@@ -134,11 +136,18 @@ class Connection final : public Listener, public std::enable_shared_from_this<Co
     if (!server_.has_room())
       return reply(http::status::service_unavailable,
                    text(most_listeners, " browsers listen already: close one\n"));
-    if (target.path == "/heat") return watch(heat_of(target));
-    std::vector<Event> past = server_.source().past();
-    past.push_back({"now", "{}"});
-    server_.listens(weak_from_this());
-    stream(past);
+    if (target.path == "/events") return stream(std::nullopt);
+    const Topic heat = heat_of(target);
+    if (!heat)
+      return reply(http::status::bad_request,
+                   "say /heat?array=ID&by=load or by=pe, with an ID that "
+                   "frames name\n");
+    const std::vector<HeatMapId> watched = server_.watched();
+    if (watched.size() >= most_heat_maps &&
+        std::find(watched.begin(), watched.end(), *heat) == watched.end())
+      return reply(http::status::service_unavailable,
+                   "other browsers watch as many heat maps as a run makes: close one\n");
+    stream(heat);
   }
 
   void reply(http::status status, std::string body,
@@ -159,22 +168,11 @@ class Connection final : public Listener, public std::enable_shared_from_this<Co
                       });
   }
 
-  void watch(const std::optional<HeatMapId>& id) {
-    if (!id)
-      return reply(http::status::bad_request,
-                   "say /heat?array=ID&by=load or by=pe, with an ID that "
-                   "frames name\n");
-    const std::vector<HeatMapId> watched = server_.watched();
-    if (watched.size() >= most_heat_maps &&
-        std::find(watched.begin(), watched.end(), *id) == watched.end())
-      return reply(http::status::service_unavailable,
-                   "other browsers watch as many heat maps as a run makes: close one\n");
-    server_.watches(*id, weak_from_this());
-    stream(server_.source().past_heat(*id));
-  }
-
-  /// Answers with events: these, and those that are sent later.
-  void stream(const std::vector<Event>& past) {
+  /// Answers with the events of a topic: those that have been, and those that are sent later.
+  void stream(const Topic& topic) {
+    std::vector<Event> past = server_.source().past(topic);
+    if (!topic) past.push_back({"now", "{}"});
+    server_.listens(topic, weak_from_this());
     stream_.expires_never();
     std::string all =
         "HTTP/1.1 200 OK\r\nContent-Type: text/event-stream\r\nCache-Control: no-store\r\n"
@@ -216,6 +214,8 @@ class Connection final : public Listener, public std::enable_shared_from_this<Co
   bool reads_ = false;
   std::array<char, 64> ignored_{};
 };
+
+namespace {
 
 /// Binds to an address of this machine.
 Tcp::acceptor bound(asio::io_context& io, const MonitorOptions& options) {
@@ -265,42 +265,39 @@ void Server::accept_later() {
 }
 
 void Server::forget_gone() {
-  std::erase_if(to_all_, [](const auto& listener) { return listener.expired(); });
-  std::erase_if(to_heat_, [](const auto& one) { return one.second.expired(); });
+  std::erase_if(listeners_, [](const auto& one) { return one.second.expired(); });
 }
 
 void Server::publish(const std::vector<Event>& events) {
   forget_gone();
-  if (to_all_.empty()) return;
-  auto all = std::make_shared<std::string>();
-  for (const Event& event : events) *all += as_text(event);
-  for (const auto& listener : to_all_) {
-    if (const auto connection = listener.lock()) connection->send(all);
+  if (listeners_.empty()) return;
+  std::map<Topic, std::shared_ptr<std::string>> texts;
+  for (const Event& event : events) {
+    auto& topic = texts[event.topic];
+    if (!topic) topic = std::make_shared<std::string>();
+    *topic += as_text(event);
   }
-}
-
-void Server::publish(const HeatMapId& id, const Event& event) {
-  const auto message = std::make_shared<const std::string>(as_text(event));
-  for (const auto& [watched, listener] : to_heat_) {
-    if (watched != id) continue;
-    if (const auto connection = listener.lock()) connection->send(message);
+  for (const auto& [topic, listener] : listeners_) {
+    const auto message = texts.find(topic);
+    if (message == texts.end()) continue;
+    if (const auto connection = listener.lock()) connection->send(message->second);
   }
 }
 
 bool Server::has_room() {
   forget_gone();
-  return to_all_.size() + to_heat_.size() < most_listeners;
+  return listeners_.size() < most_listeners;
 }
 
 bool Server::has_listeners() const {
-  return std::any_of(to_all_.begin(), to_all_.end(),
-                     [](const auto& listener) { return !listener.expired(); });
+  return std::any_of(listeners_.begin(), listeners_.end(),
+                     [](const auto& one) { return !one.first && !one.second.expired(); });
 }
 
 std::vector<HeatMapId> Server::watched() const {
   std::vector<HeatMapId> ids;
-  for (const auto& [id, listener] : to_heat_)
-    if (!listener.expired()) ids.push_back(id);
+  for (const auto& [topic, listener] : listeners_)
+    if (topic && !listener.expired()) ids.push_back(*topic);
   std::sort(ids.begin(), ids.end());
   ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
   return ids;

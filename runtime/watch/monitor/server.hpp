@@ -28,22 +28,14 @@
 
 namespace tess::detail {
 
-/// A browser that listens to the events.
-class Listener {
- public:
-  Listener() = default;
-  Listener(const Listener&) = delete;
-  Listener& operator=(const Listener&) = delete;
-  virtual ~Listener() = default;
-  virtual void send(const std::shared_ptr<const std::string>& event) = 0;
-};
+/// A connection to a browser (server.cpp).
+class Connection;
 
 class Server {
  public:
   /// What the server asks of the monitor.
   struct Source {
-    std::function<std::vector<Event>()> past;
-    std::function<std::vector<Event>(const HeatMapId&)> past_heat;
+    std::function<std::vector<Event>(const Topic&)> past;
     std::function<void()> ask_report;
   };
 
@@ -51,11 +43,9 @@ class Server {
   Server(boost::asio::io_context& io, const MonitorOptions& options, Source source);
 
   [[nodiscard]] std::uint16_t port() const { return acceptor_.local_endpoint().port(); }
-  /// Sends events to all browsers that listen to them.
+  /// Sends events to all browsers that listen to their topics.
   void publish(const std::vector<Event>& events);
-  /// Sends the event of a heat map to the browsers that watch it.
-  void publish(const HeatMapId& id, const Event& event);
-  /// True if any browser listens to the events.
+  /// True if any browser listens to what all hear.
   [[nodiscard]] bool has_listeners() const;
   /// The heat maps that browsers watch.
   [[nodiscard]] std::vector<HeatMapId> watched() const;
@@ -65,9 +55,8 @@ class Server {
   [[nodiscard]] bool has_room();
   [[nodiscard]] const Source& source() const { return source_; }
   [[nodiscard]] const std::string& token() const { return token_; }
-  void listens(std::weak_ptr<Listener> listener) { to_all_.push_back(std::move(listener)); }
-  void watches(const HeatMapId& id, std::weak_ptr<Listener> listener) {
-    to_heat_.emplace_back(id, std::move(listener));
+  void listens(const Topic& topic, std::weak_ptr<Connection> listener) {
+    listeners_.emplace_back(topic, std::move(listener));
   }
 
  private:
@@ -79,8 +68,7 @@ class Server {
   const Source source_;
   boost::asio::ip::tcp::acceptor acceptor_;
   boost::asio::steady_timer retry_;
-  std::vector<std::weak_ptr<Listener>> to_all_;
-  std::vector<std::pair<HeatMapId, std::weak_ptr<Listener>>> to_heat_;
+  std::vector<std::pair<Topic, std::weak_ptr<Connection>>> listeners_;
 };
 
 /// An event as it stands in the stream.

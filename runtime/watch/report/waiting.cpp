@@ -89,6 +89,7 @@ void Waits::merge(Waits&& other) {
                std::make_move_iterator(other.lines.end()));
   needs.insert(needs.end(), std::make_move_iterator(other.needs.begin()),
                std::make_move_iterator(other.needs.end()));
+  audit.insert(audit.end(), other.audit.begin(), other.audit.end());
   for (std::size_t rank = 0; rank < n_ranks; ++rank) n_of_rank[rank] += other.n_of_rank[rank];
 }
 
@@ -101,6 +102,7 @@ std::vector<std::string> cycles_of_replies(const std::vector<Need>& needs) {
 }
 
 std::string list_of_waiting(Waits waits) {
+  if (waits.empty()) return "nothing waits";
   std::string list = text(waits.size(), " wait:");
   const std::vector<std::string> cycles = cycles_of_replies(waits.needs);
   for (std::size_t i = 0; i < std::min(most_cycles, cycles.size()); ++i) list += "\n  " + cycles[i];

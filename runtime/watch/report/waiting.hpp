@@ -1,6 +1,6 @@
 // What waits in a run: the lines and the facts from which the reports of a deadlock, of a signal
-// and of --hang-report are made. Each PE fills a Waits; those of several PEs are merged and
-// printed.
+// and of --hang-report are made. Each PE fills a Waits (census.hpp); those of several PEs are merged
+// and printed.
 //
 //     3 wait:
 //       cycle of replies: Cell[3] waits for Cell[5].depth, Cell[5] waits for Cell[3].depth
@@ -11,6 +11,7 @@
 // reductions and barriers, then coroutines, epochs and queues. Long lists are shortened.
 #pragma once
 
+#include "runtime/watch/report/audit.hpp"
 #include "runtime/watch/report/wait_reason.hpp"
 
 #include <array>
@@ -45,6 +46,7 @@ struct Waits {
   std::vector<WaitLine> lines;
   std::array<std::uint64_t, n_ranks> n_of_rank{};  ///< with those that were not kept
   std::vector<Need> needs;
+  std::vector<AuditRow> audit;  ///< with --audit: the messages that the PEs have counted
 
   void add(WaitRank rank, std::string text);
   void add_need(Need need) {
@@ -56,7 +58,7 @@ struct Waits {
 };
 
 /// "3 wait:" and a line for each, ordered by rank and text; the last ones of many of one rank are
-/// left out, with their number. Cycles of replies stand first.
+/// left out, with their number. Cycles of replies stand first. If nothing waits it says so.
 [[nodiscard]] std::string list_of_waiting(Waits waits);
 
 /// The cycles of elements that wait for each other's replies, each as a text; at most one per

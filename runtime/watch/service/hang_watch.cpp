@@ -7,12 +7,12 @@
 
 namespace tess::detail {
 
-HangWatch::HangWatch(Runtime& runtime, Time limit)
+HangWatch::HangWatch(Runtime& runtime, Time limit, Clock::time_point now)
     : runtime_(runtime),
       limit_(limit),
       n_entered_(static_cast<std::size_t>(runtime.machine().n_pes_here())),
       named_(n_entered_.size()),
-      changed_(Clock::now()),
+      changed_(now),
       next_(changed_ + limit) {}
 
 Time HangWatch::period() const {

@@ -1,6 +1,6 @@
-// Watches the PEs of a process that has --hang-report, in real time: since when no entry method has
-// begun, and which entry methods take too long. The service calls it from its thread, a few times
-// per limit.
+// Watches the PEs of a process that has --hang-report: since when no entry method has begun, and
+// which entry methods take too long. The service calls it a few times per limit: from its thread,
+// or on a simulated machine from PE 0, where the times are virtual.
 #pragma once
 
 #include "runtime/wire/machine/machine.hpp"
@@ -18,10 +18,10 @@ class HangWatch {
  public:
   using Clock = std::chrono::steady_clock;
 
-  HangWatch(Runtime& runtime, Time limit);
+  HangWatch(Runtime& runtime, Time limit, Clock::time_point now);
 
   [[nodiscard]] Time limit() const { return limit_; }
-  /// The time between two calls of look().
+  /// The time between two calls of look() in real time.
   [[nodiscard]] Time period() const;
 
   /// Returns a line for each entry method that has taken longer than the limit since the last call.

@@ -4,9 +4,8 @@
 #include "runtime/pe/pe_action.hpp"
 #include "runtime/pe/runtime.hpp"
 #include "runtime/watch/service/hang_watch.hpp"
-#include "runtime/watch/service/job_report.hpp"
-#include "runtime/watch/service/process_census.hpp"
 #include "runtime/watch/service/timekeeper.hpp"
+#include "runtime/watch/service/wait_round.hpp"
 
 #include <array>
 #include <csignal>
@@ -26,6 +25,10 @@ constexpr auto answer_time = 300ms;
 constexpr auto abort_time = 700ms;
 /// The time in which the other processes report to process 0, and in which it confirms.
 constexpr auto job_time = 1s;
+
+/// A simulated run that waits for ever would tick for ever: after the report the ticks become
+/// rarer, each after twice the time of the last one, and after so many nothing is expected any more.
+constexpr std::uint32_t most_late_ticks = 16;
 
 constexpr std::array taken_signals{SIGINT, SIGTERM, SIGUSR1};
 
@@ -49,8 +52,18 @@ struct JobAsk {
   std::uint64_t round = 0;
   int signal = 0;
 };
-struct Fetch {
+/// What the PEs of a process have answered.
+struct ProcessReport {
+  ProcessId process{};
+  std::uint64_t job_round = 0;  ///< the round of process 0 that asked for it; 0: a signal did
+  WaitAnswer answer;
+};
+struct Nothing {
   std::uint8_t none = 0;
+};
+/// PE 0 of a simulated machine looks for a hang.
+struct VirtualTick {
+  std::uint32_t n_late = 0;  // ticks since the report
 };
 Service::Loop& loop_of(Pe& pe) {
   return static_cast<Service&>(pe.runtime().service()).loop();
@@ -59,11 +72,23 @@ void census_is_asked(Pe& pe, CensusAsked&& asked);
 void signal_exit_arrives(Pe& pe, SignalExit&& exit) {
   pe.runtime().exit(pe, 128 + exit.signal, exit.signal);
 }
+void pe_is_free(Pe& pe, Nothing&& nothing);
 void job_is_asked(Pe& pe, JobAsk&& ask);
-void job_ask_is_sent(Pe& pe, JobAsk&& ask);
-void report_is_fetched(Pe& pe, Fetch&& fetch);
 void report_arrives(Pe& pe, ProcessReport&& report);
-void report_is_confirmed(Pe& pe, Fetch&& fetch);
+void report_is_confirmed(Pe& pe, Nothing&& nothing);
+void virtual_tick_arrives(Pe& pe, VirtualTick&& tick);
+
+void set_virtual_tick(Pe& pe, Time delay, const VirtualTick& tick) {
+  auto* const message = make_message<&virtual_tick_arrives>(pe, tick);
+  message->source = pe.id();
+  message->counted = false;
+  pe.post_after(delay, message);
+}
+
+std::string hang_heading(Time idle) {
+  return text("tessera: hang: no entry method has begun on any PE for ",
+              seconds_text(seconds(idle)), "; ");
+}
 
 }  // namespace
 
@@ -72,9 +97,10 @@ class Service::Loop {
   Loop(Runtime& runtime, bool signals) : runtime_(runtime), machine_(runtime.machine()) {
     const Time limit = runtime.options().hang_report;
     const std::lock_guard lock(mutex_);
-    if (limit.count() != 0 && !machine_.virtual_time()) {
-      watch_.emplace(runtime, limit);
-      look_later();
+    if (limit.count() != 0) {
+      const bool is_virtual = machine_.virtual_time();
+      watch_.emplace(runtime, limit, is_virtual ? Clock::time_point() : Clock::now());
+      if (!is_virtual) look_later();
     }
     if (signals) thread_.take_signals(taken_signals, [this](int signal) { on_signal(signal); });
   }
@@ -94,12 +120,13 @@ class Service::Loop {
   }
 
   /// A PE answers; `round` 0: to whatever census ends the run.
-  void take(std::uint64_t round, PeId pe, Waits waits, const std::vector<AuditRow>& counted) {
+  void take(std::uint64_t round, PeId pe, Waits&& waits) {
     const std::lock_guard lock(mutex_);
-    if (!census_ || (round != 0 && round != census_->round())) return;
-    if (!census_->take(pe, std::move(waits), counted)) return;
+    if (!census_ || (round != 0 && round != census_->number())) return;
+    const auto i = static_cast<std::size_t>(pe.value - first_pe().value);
+    if (!census_->take(i, {std::move(waits), {}})) return;
     if (ending_) return report();
-    thread_.soon([this, of = census_->round()] { close_census(of); });
+    thread_.soon([this, of = census_->number()] { close_census(of); });
   }
 
   void ends_by_signal(int signal, PeId pe, Waits waits) {
@@ -111,7 +138,7 @@ class Service::Loop {
         if (thread_.started()) limit_census();
       }
     }
-    take(0, pe, std::move(waits), {});
+    take(0, pe, std::move(waits));
   }
 
   void report_job(std::function<void(std::string&&)> done) {
@@ -131,10 +158,14 @@ class Service::Loop {
 
   // For the report of the job. On the threads of PEs.
 
-  /// True for the first PE of process 0 that asks the other processes in this round.
-  [[nodiscard]] bool asks_first(std::uint64_t round) {
-    const std::lock_guard lock(mutex_);
-    return std::exchange(asked_others_in_, round) != round;
+  /// The first PE that is free sends what leaves this process.
+  void send_pending(Pe& pe) {
+    std::function<void(Pe&)> send;
+    {
+      const std::lock_guard lock(mutex_);
+      send = std::exchange(pending_send_, nullptr);
+    }
+    if (send) send(pe);
   }
   /// Process 0 asks this process.
   void asked(const JobAsk& ask) {
@@ -142,13 +173,6 @@ class Service::Loop {
     if (closed_ || ending_ || ask.round <= last_asked_) return;
     last_asked_ = ask.round;
     thread_.soon([this, ask] { answer(ask); });
-  }
-  /// This process's report, for the first PE that fetches it.
-  [[nodiscard]] std::optional<ProcessReport> fetch() {
-    const std::lock_guard lock(mutex_);
-    if (fetched_ || !outgoing_) return std::nullopt;
-    fetched_ = true;
-    return outgoing_;
   }
   void confirmed() {
     const std::lock_guard lock(mutex_);
@@ -162,10 +186,17 @@ class Service::Loop {
       if (closed_ || ending_) return;
       if (report.job_round == 0 && (job_ || Clock::now() - job_printed_ > job_time))
         begin_job(SIGUSR1);  // another process got the signal
-      if (!job_ || (report.job_round != 0 && report.job_round != job_->round())) return;
-      take_part(std::move(report));
+      if (!job_ || (report.job_round != 0 && report.job_round != job_->number())) return;
+      take_part(report.process, std::move(report.answer));
     });
   }
+
+  // On a simulated machine, on PE 0.
+
+  void begins(Pe& pe) const {
+    if (watch_ && machine_.virtual_time()) set_virtual_tick(pe, watch_->limit() / 2, {});
+  }
+  void look(Pe& pe, std::uint32_t n_late);
 
  private:
   // Called under the lock.
@@ -196,16 +227,18 @@ class Service::Loop {
   }
 
   void new_census(int signal, std::uint64_t job_round = 0) {
-    census_.emplace(signal, ++n_rounds_, job_round, first_pe(), machine_.n_pes_here());
+    census_.emplace(++n_rounds_, static_cast<std::size_t>(machine_.n_pes_here()));
+    census_signal_ = signal;
+    census_job_ = job_round;
   }
   void begin_census(int signal, std::uint64_t job_round = 0) {
     new_census(signal, job_round);
-    send_to_pes<&census_is_asked>(CensusAsked{census_->round()});
+    send_to_pes<&census_is_asked>(CensusAsked{census_->number()});
     limit_census();
   }
   void limit_census() {
-    after(answers_due_, answer_time, [this, round = census_->round()] {
-      if (census_->round() == round) report();
+    after(answers_due_, answer_time, [this, round = census_->number()] {
+      if (census_->number() == round) report();
     });
   }
   void begin_job(int signal) {
@@ -215,33 +248,41 @@ class Service::Loop {
       return;
     }
     print_later(signal);
-    job_.emplace(++n_jobs_, n_processes());
+    job_.emplace(++n_jobs_, static_cast<std::size_t>(n_processes()));
     after(job_due_, answer_time + job_time, [this] {
       if (job_ && !ending_) print_job();
     });
-    if (n_processes() > 1) send_to_pes<&job_ask_is_sent>(JobAsk{n_jobs_, signal});
+    if (n_processes() > 1)
+      on_free_pe([ask = JobAsk{n_jobs_, signal}](Pe& pe) {
+        for (std::int32_t to = pe.machine().pes_per_process(); to < pe.n_pes(); ++to)
+          send_uncounted<&job_is_asked>(pe, PeId{to}, ask);
+      });
     begin_census(signal, n_jobs_);
   }
   void print_later(int signal) {
     job_signal_ = signal;
     job_heading_ = heading(signal);
   }
-  void take_part(ProcessReport&& report) {
-    job_->take(std::move(report));
-    if (job_->complete()) print_job();
+  void take_part(ProcessId process, WaitAnswer&& answer) {
+    if (job_->take(static_cast<std::size_t>(process.value), std::move(answer))) print_job();
   }
   void print_job();
+  /// Has the first PE of this process that is free call `send`; a later call replaces one that waits.
+  void on_free_pe(std::function<void(Pe&)> send) {
+    pending_send_ = std::move(send);
+    send_to_pes<&pe_is_free>(Nothing{});
+  }
   /// Has a PE send the report to process 0; prints it here if process 0 does not confirm it.
   void send_report(ProcessReport&& report) {
-    outgoing_ = std::move(report);
-    fetched_ = false;
-    send_to_pes<&report_is_fetched>(Fetch{});
+    outgoing_ = report.answer;
+    on_free_pe([report = std::move(report)](Pe& pe) {
+      send_uncounted<&report_arrives>(pe, PeId{0}, report);
+    });
     after(confirmed_due_, job_time, [this] {
       if (!outgoing_ || outgoing_->active || ending_) return;
-      Waits& waits = outgoing_->waits;
-      runtime_.error_line(text(
-          "tessera: ", machine_.process(), " reports itself, since process 0 has not answered: ",
-          waits.empty() ? "nothing waits" : list_of_waiting(std::move(waits))));
+      runtime_.error_line(text("tessera: ", machine_.process(),
+                               " reports itself, since process 0 has not answered: ",
+                               list_of_waiting(std::move(outgoing_->waits))));
       outgoing_.reset();
     });
   }
@@ -258,18 +299,16 @@ class Service::Loop {
   // On the thread of the service.
 
   void close_census(std::uint64_t round) {
-    if (!closed_ && !ending_ && census_->round() == round) report();
+    if (!closed_ && !ending_ && census_->number() == round) report();
   }
   void answer(const JobAsk& ask) {
     if (closed_ || ending_) return;
     if (ask.signal == hang && watch_ && watch_->idle(Clock::now()) < watch_->limit() * 3 / 4) {
-      ProcessReport busy;
-      busy.process = machine_.process();
-      busy.job_round = ask.round;
+      WaitAnswer busy;
       busy.active = true;
-      send_report(std::move(busy));
-    } else if (census_ && !census_->reported()) {
-      census_->serve_job(ask.round);  // the signal came here, too
+      send_report({machine_.process(), ask.round, std::move(busy)});
+    } else if (census_ && !census_->ended()) {
+      census_job_ = ask.round;  // the signal came here, too
     } else {
       begin_census(ask.signal, ask.round);
     }
@@ -300,17 +339,19 @@ class Service::Loop {
   std::mutex mutex_;  // guards what follows
   std::multimap<Clock::time_point, std::pair<PeId, Envelope*>> later_;
   std::optional<HangWatch> watch_;
-  std::optional<ProcessCensus> census_;
+  std::optional<WaitRound> census_;  // of the PEs of this process
+  int census_signal_ = 0;
+  std::uint64_t census_job_ = 0;  // the round of process 0 that asks for it; 0: none does
   std::uint64_t n_rounds_ = 0;
-  std::optional<JobReport> job_;  // process 0 collects the report of the job
+  std::optional<WaitRound> job_;  // of the processes of the job; on process 0
   int job_signal_ = 0;
   bool signalled_in_hang_ = false;  // SIGUSR1 came while it was asked whether the job hangs
   std::string job_heading_;
-  std::uint64_t n_jobs_ = 0, asked_others_in_ = 0;
+  std::uint64_t n_jobs_ = 0;
   Clock::time_point job_printed_{};
   std::vector<std::function<void(std::string&&)>> askers_;  // of the job's report, beside a signal
-  std::optional<ProcessReport> outgoing_;  // other processes: not yet confirmed by process 0
-  bool fetched_ = false;
+  std::optional<WaitAnswer> outgoing_;     // other processes: not yet confirmed by process 0
+  std::function<void(Pe&)> pending_send_;  // on_free_pe()
   std::uint64_t last_asked_ = 0;
   bool signalled_ = false;  // a signal that ends the run has come to this process
   bool ending_ = false;     // or to another one
@@ -320,32 +361,45 @@ class Service::Loop {
 };
 
 void Service::Loop::report() {
-  if (census_->reported()) return;
-  ProcessReport of = census_->finish(runtime_, answer_time);
+  if (census_->ended()) return;
+  WaitAnswer answer = census_->end([this](std::size_t i, WaitAnswer& sum) {
+    const PeId pe{first_pe().value + static_cast<std::int32_t>(i)};
+    sum.silent.push_back(pe);
+    sum.waits.add(WaitRank::handler, text(pe, " has not answered within ", answer_time.count(),
+                                          " ms: ", runtime_.running_text(pe)));
+  });
   if (ending_) {
     const std::string where = n_processes() > 1 ? text("on ", machine_.process(), ", ") : "";
-    runtime_.error_line(
-        text("tessera: ", name_of_signal(census_->signal()), " ends the run; ", where,
-             of.waits.empty() ? "nothing waits" : list_of_waiting(std::move(of.waits))));
-    send_to_pes<&signal_exit_arrives>(SignalExit{census_->signal()});
+    runtime_.error_line(text("tessera: ", name_of_signal(census_signal_), " ends the run; ", where,
+                             list_of_waiting(std::move(answer.waits))));
+    send_to_pes<&signal_exit_arrives>(SignalExit{census_signal_});
   } else if (!leads()) {
-    send_report(std::move(of));
+    send_report({machine_.process(), census_job_, std::move(answer)});
   } else if (job_) {
-    take_part(std::move(of));
+    take_part(machine_.process(), std::move(answer));
   }
 }
 
 void Service::Loop::print_job() {
-  JobReport done = std::move(*job_);
+  WaitAnswer done = job_->end([this](std::size_t i, WaitAnswer& sum) {
+    const ProcessId process{static_cast<std::int32_t>(i)};
+    const std::int32_t n_pes = n_processes() > 1 ? machine_.pes_per_process() : machine_.n_pes();
+    for (std::int32_t pe = 0; pe < n_pes; ++pe)
+      sum.silent.push_back(PeId{machine_.first_pe(process).value + pe});
+    if (n_processes() > 1)
+      sum.waits.add(
+          WaitRank::handler,
+          text(process, " has not answered: all its PEs are in entry methods, or it has ended"));
+  });
   job_.reset();
   const bool signalled = std::exchange(signalled_in_hang_, false);
-  if (job_signal_ == hang && done.active()) {  // no hang; the askers want the whole report
+  if (job_signal_ == hang && done.active) {  // no hang; the askers want the whole report
     watch_->ask_later(Clock::now());
     if (signalled || !askers_.empty()) begin_job(signalled ? SIGUSR1 : browser);
     return;
   }
   if (job_signal_ == hang) watch_->reported();
-  const std::string words = done.finish(runtime_);
+  const std::string words = text_of(runtime_, std::move(done));
   for (const auto& asker : std::exchange(askers_, {})) asker(std::string(words));
   if (job_signal_ == browser) return;
   runtime_.error_line(job_heading_ + words);
@@ -371,31 +425,39 @@ void Service::Loop::on_signal(int signal) {
   after(abort_due_, abort_time, [this, signal] { machine_.abort(128 + signal); });
 }
 
+void Service::Loop::look(Pe& pe, std::uint32_t n_late) {
+  if (pe.stopped() || n_late == most_late_ticks) return;
+  const auto now = Clock::time_point(pe.now());
+  (void)watch_->look(now);  // no other PE is in an entry method
+  const Time limit = watch_->limit(), idle = watch_->idle(now);
+  if (idle < limit) return set_virtual_tick(pe, limit / 2, {});
+  if (n_late == 0)
+    runtime_.error_line(hang_heading(idle) + text_of(runtime_, answer_of_all(runtime_, pe.now())));
+  set_virtual_tick(pe, limit * (1U << n_late), {n_late + 1});
+}
+
 namespace {
 
 void census_is_asked(Pe& pe, CensusAsked&& asked) {
-  loop_of(pe).take(asked.round, pe.id(), census_of_running(pe), pe.measuring().audit_rows());
+  loop_of(pe).take(asked.round, pe.id(), census_of_running(pe));
 }
-void job_ask_is_sent(Pe& pe, JobAsk&& ask) {
-  if (!loop_of(pe).asks_first(ask.round)) return;
-  for (std::int32_t to = pe.machine().pes_per_process(); to < pe.n_pes(); ++to)
-    send_uncounted<&job_is_asked>(pe, PeId{to}, ask);
+void pe_is_free(Pe& pe, Nothing&& /*nothing*/) {
+  loop_of(pe).send_pending(pe);
 }
 void job_is_asked(Pe& pe, JobAsk&& ask) {
   loop_of(pe).asked(ask);
-}
-void report_is_fetched(Pe& pe, Fetch&& /*fetch*/) {
-  if (auto report = loop_of(pe).fetch())
-    send_uncounted<&report_arrives>(pe, PeId{0}, std::move(*report));
 }
 void report_arrives(Pe& pe, ProcessReport&& report) {
   const PeId from = pe.machine().first_pe(report.process);
   loop_of(pe).take_report(std::move(report));
   for (std::int32_t i = 0; i < pe.machine().pes_per_process(); ++i)
-    send_uncounted<&report_is_confirmed>(pe, PeId{from.value + i}, Fetch{});
+    send_uncounted<&report_is_confirmed>(pe, PeId{from.value + i}, Nothing{});
 }
-void report_is_confirmed(Pe& pe, Fetch&& /*fetch*/) {
+void report_is_confirmed(Pe& pe, Nothing&& /*nothing*/) {
   loop_of(pe).confirmed();
+}
+void virtual_tick_arrives(Pe& pe, VirtualTick&& tick) {
+  loop_of(pe).look(pe, tick.n_late);
 }
 
 }  // namespace
@@ -404,6 +466,9 @@ Service::Service(Runtime& runtime, bool signals)
     : loop_(std::make_unique<Loop>(runtime, signals)) {}
 Service::~Service() = default;
 
+void Service::begins(Pe& pe) {
+  loop_->begins(pe);
+}
 void Service::post_after(PeId to, Envelope* message, Time delay) {
   loop_->post_after(to, message, delay);
 }

@@ -16,10 +16,13 @@
 //
 // For the job's report each process takes its own census as above, and one of its PEs sends it to
 // PE 0. Process 0 prints what has arrived within a second. A process that gets no answer from
-// process 0 prints its own part.
+// process 0 prints its own part. What leaves a process is sent by the first of its PEs that is free.
 //
-//     process p  signal -> census -> a PE fetches it -> PE 0 -> process 0 ──► report
+//     process p  signal -> census -> a PE sends it -> PE 0 -> process 0 ──► report
 //     process 0  signal, or hang -> a PE asks all PEs of other processes -> each process: census …
+//
+// On a simulated machine PE 0 looks for a hang by messages in virtual time, and reads the censuses of
+// all PEs itself.
 //
 // The PEs call it, and it posts messages to them; it runs no user code.
 #pragma once
@@ -40,6 +43,7 @@ class Service final : public ProcessService {
   Service& operator=(const Service&) = delete;
   ~Service() override;
 
+  void begins(Pe& pe) override;
   void post_after(PeId to, Envelope* message, Time delay) override;
   void ends_by_signal(int signal, PeId pe, Waits waits) override;
   void report_job(std::function<void(std::string&&)> done) override;

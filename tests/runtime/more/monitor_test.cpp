@@ -277,8 +277,7 @@ TEST_CASE("a heat map shows where elements are and what they cost, while it is w
             do {
               map = by_pe.next("heat");
             } while (!map["summary"].get<std::string>().starts_with("4 elements on "));
-            CHECK(map["width"] == 4);
-            CHECK(map["height"] == 1);
+            CHECK(map["shape"] == json({4, 1, 1}));
             for (const json& pe : map["values"]) CHECK((pe == 0 || pe == 1));
             Browser by_load(port, "/heat?by=load&array=" + id);
             do {

@@ -36,6 +36,12 @@ PeSample sample(int pe, int at_ms, int idle_ms, std::uint64_t messages, std::uin
 std::string nothing(tess::PeId /*pe*/) {
   return {};
 }
+/// The new events of heat maps.
+std::vector<Event> heat_events(Board& board) {
+  std::vector<Event> events = board.take_events(1, &nothing);
+  std::erase_if(events, [](const Event& event) { return event.kind != "heat"; });
+  return events;
+}
 json last_frame(Board& board, double seconds) {
   const std::vector<Event> events = board.take_events(seconds, &nothing);
   for (const Event& event : events)
@@ -95,7 +101,7 @@ TEST_CASE("a late browser sees the last minutes, and they are bounded", "[runtim
     board.note({"round \"" + std::to_string(i) + "\"\n", 1.5, 1.1});
     (void)board.take_events(i, &nothing);
   }
-  const std::vector<Event> past = board.past();
+  const std::vector<Event> past = board.past(std::nullopt);
   CHECK(past.size() == 600);
   CHECK(json::parse(past.back().json)["t"] == 1999);
   CHECK(json::parse(past[past.size() - 2].json)["text"] == "round \"1999\"\n");
@@ -114,7 +120,7 @@ TEST_CASE("parts of a picture meet, whatever their order", "[runtime][monitor]")
   CHECK(picture["most"] == 8);
   CHECK(picture["values"] == "0024496d92b6dbff");                // 0, 1/7, … 1 of 255
   CHECK(board.take_events(2, &nothing).back().kind == "frame");  // unchanged: not sent again
-  CHECK(board.past().back().kind == "picture");
+  CHECK(board.past(std::nullopt).back().kind == "picture");
   for (int i = 0; i < 100; ++i)
     CHECK(board.draw({"p" + std::to_string(i), 1, 1, 0, 0, 1, {1}}) == (i < 15));
   CHECK(board.take_events(3, &nothing).size() == 16);  // a frame and fifteen new names
@@ -154,21 +160,22 @@ TEST_CASE("a heat map that is watched again begins anew", "[runtime][monitor]") 
   const HeatQuery first = board.heat_queries().front();
   board.take({first, tess::PeId{1}, tess::range(4), {0, 1, 2, 3}, {1, 1, 1, 1}});
   board.take({{{tess::CollectionId{8}, HeatBy::pe}, 1}, tess::PeId{0}, tess::range(4), {0}, {9}});
-  auto events = board.take_heat_events();
+  const auto events = heat_events(board);
   REQUIRE(events.size() == 1);
-  CHECK(events[0].first == asked);
-  CHECK(json::parse(events[0].second.json)["name"] == "Block");
-  CHECK(json::parse(events[0].second.json)["values"] == json({1, 1, 1, 1}));
-  CHECK(board.take_heat_events().empty());  // unchanged: not sent again
-  CHECK(board.past_heat(asked).size() == 1);
+  CHECK(events[0].topic == asked);
+  CHECK(json::parse(events[0].json)["name"] == "Block");
+  CHECK(json::parse(events[0].json)["values"] == json({1, 1, 1, 1}));
+  CHECK(heat_events(board).empty());  // unchanged: not sent again
+  CHECK(board.past(asked).size() == 1);
+  for (const Event& event : board.past(std::nullopt)) CHECK(event.kind == "frame");
 
   board.watch_heat({});
   CHECK(board.heat_queries().empty());
   board.watch_heat({asked});
   CHECK(board.heat_queries().front() != first);
-  CHECK(board.past_heat(asked).empty());
+  CHECK(board.past(asked).empty());
   board.take({first, tess::PeId{1}, tess::range(4), {0}, {1}});  // late, for the former watch
-  CHECK(board.take_heat_events().empty());
+  CHECK(heat_events(board).empty());
 }
 
 TEST_CASE("--monitor takes a port, and wants a token where others can reach it",

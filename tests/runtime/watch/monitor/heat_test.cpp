@@ -20,10 +20,10 @@ void check(const Range& range) {
   INFO(range.extent[0] << " x " << range.extent[1] << " x " << range.extent[2] << ", "
                        << range.n_axes << " axes");
   const HeatGrid grid(range);
-  CHECK(grid.width() > 0);
-  CHECK(grid.height() > 0);
-  CHECK(grid.width() <= HeatGrid::most_cells);
-  CHECK(grid.height() <= HeatGrid::most_cells);
+  CHECK(grid.n_cells() > 0);
+  CHECK(grid.n_cells() <= HeatGrid::most_cells);
+  if (range.n_axes == 2 || range.n_axes == 3)
+    for (const std::int64_t n : grid.shape()) CHECK(n <= HeatGrid::most_on_axis);
   // Each index has a cell, and each cell has as many as it says.
   std::vector<std::uint64_t> n(grid.n_cells());
   for (std::uint64_t rank = 0; rank < range.size(); ++rank)
@@ -76,8 +76,7 @@ TEST_CASE("a cell of a heat map names its indices", "[runtime][monitor]") {
 
 TEST_CASE("a row of a two-dimensional heat map is a row of y", "[runtime][monitor]") {
   const HeatGrid grid(tess::range(3, 2));  // rank = 2 x + y
-  CHECK(grid.width() == 3);
-  CHECK(grid.height() == 2);
+  CHECK(grid.shape() == HeatGrid::Axes{3, 2, 1});
   CHECK(grid.cell_of(1) == 3);  // x 0, y 1
   CHECK(grid.cell_of(4) == 2);  // x 2, y 0
 }
@@ -91,7 +90,7 @@ TEST_CASE("the load of a cell is the mean of lately reported parts of a PE, for 
     map.take({{}, PeId{0}, range, {0, 1}, {0.5F, 0.3F}});
     map.take({{}, PeId{1}, range, {3}, {0.125F}});
     const json shown = event(map);
-    CHECK(shown["width"] == 4);
+    CHECK(shown["shape"] == json({4, 1, 1}));
     CHECK(shown["values"] == "ff990040");
     CHECK(shown["most"].get<double>() == Approx(0.5).epsilon(0.35));  // one period had no report
   }
