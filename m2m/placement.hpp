@@ -3,14 +3,16 @@
 // and before the owners of points are decided; without a halo, for the rest a PE knows how many
 // tetrahedra, points and lists of ghosts it gets, and goes on when they are here:
 //
-//     read      every PE reads a range of the points, of which it is the keeper, and of the tetrahedra
-//     corners   asks the keepers for the corners of its tetrahedra; both are checked as by validate()
-//     count     tetrahedra in cells of a Hilbert curve, until it is known where to cut (CurveCut)
-//     send      every tetrahedron goes to the PE of its part
-//     points    a part asks the keepers for its points; the lowest part that asks owns a point
-//     halo      per layer: asks the other parts at its points for their tetrahedra there
-//     ghosts    a part reports to the owners of its ghosts where they are, and evaluates its fields
-//     load      the parts, complete, go to their Workers
+//     1  read     every PE reads a range of the points, of which it is the keeper, and of the
+//                 tetrahedra
+//        corners  asks the keepers for the corners of its tetrahedra; both are checked as by
+//                 validate()
+//        count    tetrahedra in cells of a Hilbert curve, until it is known where to cut (CurveCut)
+//     2  send     every tetrahedron goes to the PE of its part
+//     3  points   a part asks the keepers for its points; the lowest part that asks owns a point
+//     4  halo     per layer: asks the other parts at its points for their tetrahedra there
+//        ghosts   a part reports to the owners of its ghosts where they are, and evaluates its fields
+//        load     the parts, complete, go to their Workers
 //
 // survey() ends after the corners and the shapes of the tetrahedra, and builds nothing.
 //

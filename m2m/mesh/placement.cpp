@@ -34,17 +34,37 @@ Aabb checked_bounds(const PlacerReport& report, const PlacerSetup& setup) {
   return report.findings.bounds;
 }
 
+/// Begins to read, and ends when all messages about corners have arrived. `whole`: the mesh if its
+/// ranges are sent, otherwise null.
+Task read_ranges(GroupProxy<Placer> placers, const TetMesh* whole, Callback<PlacerReport> target) {
+  co_await epoch([&] {
+    if (whole == nullptr) {
+      placers.broadcast<&Placer::read>(RangeLoad{}, target);
+      return;
+    }
+    const std::int64_t n_pes = tess::n_pes();
+    const auto cut = [&](const auto& list, std::int32_t pe) {
+      const auto n = static_cast<std::int64_t>(list.size());
+      return std::vector(list.begin() + n * pe / n_pes, list.begin() + n * (pe + 1) / n_pes);
+    };
+    for (std::int32_t pe = 0; pe < n_pes; ++pe)
+      placers[PeId{pe}].send<&Placer::read>(RangeLoad{cut(whole->points, pe), cut(whole->tets, pe)},
+                                            target);
+  });
+}
+
 /// A mesh that was read and checked.
 struct ReadMesh {
   MeshCensus census;
-  Measured measured;
+  CellCounts counts;          // for the first round of a CurveCut
   std::vector<Task> corners;  // of the messages about corners, some of which may be under way
 };
 
-TaskOf<ReadMesh> read_and_measure(GroupProxy<Placer> placers, PlacerSetup setup) {
+TaskOf<ReadMesh> read_and_measure(GroupProxy<Placer> placers, PlacerSetup setup,
+                                  const TetMesh* whole) {
   ReadMesh mesh;
   Future<PlacerReport> read;
-  mesh.corners.push_back(step<&Placer::read>(placers, read.callback()));
+  mesh.corners.push_back(read_ranges(placers, whole, read.callback()));
   const PlacerReport report = co_await read;
   std::exception_ptr refused;
   try {
@@ -57,29 +77,30 @@ TaskOf<ReadMesh> read_and_measure(GroupProxy<Placer> placers, PlacerSetup setup)
     std::rethrow_exception(refused);
   }
 
-  mesh.measured = co_await placers.reduce<&Placer::measure>(mesh.census.bounds);
-  const Measured& all = mesh.measured;
-  all.report.findings.refuse_bad_shapes(setup.shown_name, static_cast<std::uint64_t>(setup.n_tets));
-  mesh.census.n_flat = all.report.findings.n_flat;
-  mesh.census.n_inverted = all.report.findings.n_inverted;
+  PlacerReport measured = co_await placers.reduce<&Placer::measure>(mesh.census.bounds);
+  const MeshFindings& findings = measured.findings;
+  findings.refuse_bad_shapes(setup.shown_name, static_cast<std::uint64_t>(setup.n_tets));
+  mesh.census.n_flat = findings.n_flat;
+  mesh.census.n_inverted = findings.n_inverted;
+  mesh.counts = std::move(measured.counts);
   co_return mesh;
 }
 
 // A step whose messages the PEs count begins before they have arrived; so every PE goes on as soon
 // as it can.
-TaskOf<MeshCensus> lead(GroupProxy<Placer> placers, PlacerSetup setup) {
-  ReadMesh mesh = co_await read_and_measure(placers, setup);
+TaskOf<MeshCensus> lead(GroupProxy<Placer> placers, PlacerSetup setup, const TetMesh* whole) {
+  ReadMesh mesh = co_await read_and_measure(placers, setup, whole);
   CurveCut cut(static_cast<std::uint64_t>(setup.n_tets), setup.n_parts);
-  if (!cut.is_done()) cut.refine(mesh.measured.counts);
+  if (!cut.is_done()) cut.refine(mesh.counts);
   while (!cut.is_done()) {
-    const CellCounts sum = co_await placers.reduce<&Placer::count>(cut);
-    cut.refine(sum);
+    const PlacerReport sum = co_await placers.reduce<&Placer::count>(cut);
+    cut.refine(sum.counts);
   }
 
   co_await step<&Placer::send_tets>(placers, cut);
   co_await when_all(std::move(mesh.corners));
   Future<PlacerReport> finished;
-  co_await step<&Placer::answer_points>(placers, finished.callback());
+  co_await step<&Placer::answer_parts>(placers, finished.callback());
   if (setup.halo_layers > 0) {
     for (std::int32_t layer = 0; layer < setup.halo_layers; ++layer) {
       co_await step<&Placer::ask_around>(placers);
@@ -94,31 +115,15 @@ TaskOf<MeshCensus> lead(GroupProxy<Placer> placers, PlacerSetup setup) {
   co_return mesh.census;
 }
 
-/// Sends the ranges of a mesh; of null none.
-Task send_ranges(GroupProxy<Placer> placers, const TetMesh* whole) {
-  if (whole == nullptr) co_return;
-  co_await epoch([&] {
-    const std::int64_t n_pes = tess::n_pes();
-    const auto cut = [&](const auto& list, std::int32_t pe) {
-      const auto n = static_cast<std::int64_t>(list.size());
-      return std::vector(list.begin() + n * pe / n_pes, list.begin() + n * (pe + 1) / n_pes);
-    };
-    for (std::int32_t pe = 0; pe < n_pes; ++pe)
-      placers[PeId{pe}].send<&Placer::receive_range>(
-          RangeLoad{cut(whole->points, pe), cut(whole->tets, pe)});
-  });
-}
-
 /// `whole`: the mesh if its ranges are sent, otherwise null.
 TaskOf<MeshSurvey> survey_ranges(PlacerSetup setup, const TetMesh* whole) {
   MeshSurvey out;
   const GroupProxy<Placer> placers = create<Placer>(each_pe, setup);
   std::exception_ptr error;
   try {
-    co_await send_ranges(placers, whole);
-    ReadMesh mesh = co_await read_and_measure(placers, setup);
+    ReadMesh mesh = co_await read_and_measure(placers, setup, whole);
     co_await when_all(std::move(mesh.corners));
-    const SurveyReport report = co_await placers.reduce<&Placer::count_extent>();
+    const PlacerReport report = co_await placers.reduce<&Placer::finish_survey>();
     throw_first(report.error);
     out.census = mesh.census;
     out.census.n_unused = report.n_unused;
@@ -141,8 +146,7 @@ TaskOf<PlacedMesh> place_ranges(PlacerSetup setup, const TetMesh* whole) {
   const GroupProxy<Placer> placers = create<Placer>(each_pe, setup);
   std::exception_ptr error;
   try {
-    co_await send_ranges(placers, whole);
-    placed.census = co_await lead(placers, setup);
+    placed.census = co_await lead(placers, setup, whole);
   } catch (...) {
     error = std::current_exception();
   }

@@ -2,7 +2,6 @@
 #include "m2m/cell_transfer.hpp"
 
 #include "apps/kit/worst.hpp"
-#include "m2m/mesh/workers/cell_worker.hpp"
 #include "runtime/core/error.hpp"
 #include "runtime/here.hpp"
 #include "runtime/more/testing.hpp"
@@ -102,8 +101,8 @@ Task refused_cells(const TetMesh& mesh, TransferOptions options, std::string* me
 
 /// Options are looked at before anything is sent, so the arrays may have no elements.
 Task search_with(CouplingOptions options) {
-  const auto none = create<CellWorker>(sparse);
-  Coupling<CellWorker, CellWorker> coupling(none, none, options);
+  const auto none = create<Worker>(sparse);
+  Coupling<Worker, Worker> coupling(none, none, options);
   co_await coupling.search();
 }
 

@@ -23,12 +23,9 @@ PeId Placer::home_of(std::int32_t part) const {
   return PeId{static_cast<std::int32_t>(std::int64_t{part} * n_pes_ / setup_.n_parts)};
 }
 
-void Placer::receive_range(RangeLoad load) {
+void Placer::read(RangeLoad load, Callback<PlacerReport> target) {
   points_ = std::move(load.points);
   tets_ = std::move(load.tets);
-}
-
-void Placer::read(Callback<PlacerReport> target) {
   PlacerReport report;
   const GlobalId n_points = first_of(setup_.n_points, me_ + 1) - first_point_;
   const GlobalId n_tets = first_of(setup_.n_tets, me_ + 1) - first_tet_;
@@ -48,12 +45,10 @@ void Placer::read(Callback<PlacerReport> target) {
   } catch (const Error& error) {
     report.error = {me_, static_cast<std::int32_t>(error.code()), error.what()};
   }
-  // A refused mesh ends here: its queries need no answer.
   const bool refused = report.error.key >= 0 || report.findings.bad_corner.tet >= 0;
-  reading_ = refused ? Reading::refused : Reading::done;
+  knows_ = refused ? Knows::refused : Knows::points;
   if (!refused) ask_corners();
-  for (CornerQuery& query : early_queries_) answer_corners(std::move(query));
-  drop(early_queries_);
+  for (PointQuery& query : std::exchange(queries_, {})) receive_query(std::move(query));
   contribute(JoinReports{}, std::move(report), std::move(target));
 }
 
@@ -77,31 +72,12 @@ void Placer::ask_corners() {
   const std::vector<VertexId> ids = far_->list();
   far_points_.resize(ids.size());
   for_each_keeper(ids, [&](std::int32_t keeper, std::span<const VertexId> of) {
-    group()[PeId{keeper}].send<&Placer::answer_corners>(
-        CornerQuery{tess::my_pe(), {of.begin(), of.end()}});
-    ++n_corners_due_;
+    send_query({tess::my_pe(),
+                PeId{keeper},
+                {},
+                {static_cast<std::int32_t>(of.size())},
+                {of.begin(), of.end()}});
   });
-}
-
-void Placer::answer_corners(CornerQuery query) {
-  if (reading_ == Reading::before) {
-    early_queries_.push_back(std::move(query));
-    return;
-  }
-  if (reading_ == Reading::refused) return;
-  if (setup_.is_survey) mark_used(query.ids);
-  CornerAnswer answer{query.ids.front(), {}};
-  answer.points.reserve(query.ids.size());
-  for (const VertexId v : query.ids)
-    answer.points.push_back(points_[static_cast<std::size_t>(v - first_point_)]);
-  group()[query.from].send<&Placer::receive_corners>(std::move(answer));
-}
-
-void Placer::receive_corners(const CornerAnswer& answer) {
-  std::copy(answer.points.begin(), answer.points.end(),
-            far_points_.begin() + far_->rank(answer.first));
-  --n_corners_due_;
-  measure_if_complete();
 }
 
 std::array<Point, 4> Placer::corners_of(const Tet& tet) const {
@@ -115,33 +91,35 @@ std::array<Point, 4> Placer::corners_of(const Tet& tet) const {
   return corners;
 }
 
-void Placer::measure(const Aabb& bounds, Callback<Measured> target) {
+void Placer::measure(const Aabb& bounds, Callback<PlacerReport> target) {
   measures_ = bounds;
   measured_ = std::move(target);
   measure_if_complete();
 }
 
 void Placer::measure_if_complete() {
-  if (!measures_ || n_corners_due_ != 0) return;
-  Measured measured;
+  if (!measures_ || n_answers_due_ != 0) return;
+  PlacerReport report;
   const HilbertCube cube(*measures_);
   measures_.reset();
   cells_.resize(tets_.size());
   for (std::size_t t = 0; t < tets_.size(); ++t) {
     const std::array<Point, 4> corners = corners_of(tets_[t]);
-    measured.report.findings.add_shape(first_tet_ + static_cast<GlobalId>(t), corners);
+    report.findings.add_shape(first_tet_ + static_cast<GlobalId>(t), corners);
     if (setup_.is_survey) extent_.add(corners);
     cells_[t] = cube.cell(mean_of_corners(corners));
   }
   far_.reset();
   drop(far_points_);
-  measured.counts =
+  report.counts =
       CurveCut(static_cast<std::uint64_t>(setup_.n_tets), setup_.n_parts).counts(cells_);
-  contribute(JoinMeasured{}, std::move(measured), std::move(measured_));
+  contribute(JoinReports{}, std::move(report), std::move(measured_));
 }
 
-void Placer::count(const CurveCut& cut, Callback<CellCounts> target) {
-  contribute(JoinCounts{}, cut.counts(cells_), std::move(target));
+void Placer::count(const CurveCut& cut, Callback<PlacerReport> target) {
+  PlacerReport report;
+  report.counts = cut.counts(cells_);
+  contribute(JoinReports{}, std::move(report), std::move(target));
 }
 
 void Placer::send_tets(const CurveCut& cut) {
@@ -188,7 +166,8 @@ void Placer::receive_tets(TetBatch batch) {
 void Placer::ask_points_if_complete() {
   if (n_tets_due_ != n_tets_here_) return;
   n_tets_due_.reset();
-  ask_points();
+  make_drafts();
+  ask_points_of_parts();
 }
 
 }  // namespace tess::m2m

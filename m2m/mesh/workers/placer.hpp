@@ -30,7 +30,7 @@ struct PlacerSetup {
   std::vector<FormulaField> fields;
   ArrayProxy<Worker> workers;
   std::int32_t n_parts = 1;
-  bool is_survey = false;  ///< ends with count_extent(), and builds no parts
+  bool is_survey = false;  ///< ends with finish_survey(), and builds no parts
 };
 
 /// The error with the least key of all PEs, if there is one.
@@ -43,62 +43,29 @@ struct FirstError {
   }
 };
 
-/// Contributed after a step of checks.
+/// Contributed at the end of a step; a step fills in what it finds.
 struct PlacerReport {
   MeshFindings findings{};
   FirstError error{};
   std::uint64_t n_unused = 0;
+  CellCounts counts{};  ///< for a round of a CurveCut
+  MeshExtent extent{};  ///< in a survey
 };
 struct JoinReports {
   PlacerReport operator()(PlacerReport a, const PlacerReport& b) const {
     a.findings.join(b.findings);
     a.error.keep_first(b.error);
     a.n_unused += b.n_unused;
-    return a;
-  }
-};
-
-/// Contributed at the end of a survey.
-struct SurveyReport {
-  MeshExtent extent{};
-  std::uint64_t n_unused = 0;
-  FirstError error{};
-};
-struct JoinSurveys {
-  SurveyReport operator()(SurveyReport a, const SurveyReport& b) const {
+    a.counts = JoinCounts{}(std::move(a.counts), b.counts);
     a.extent.join(b.extent);
-    a.n_unused += b.n_unused;
-    a.error.keep_first(b.error);
     return a;
-  }
-};
-
-/// Contributed after the shapes: what the first round of a CurveCut needs as well.
-struct Measured {
-  PlacerReport report{};
-  CellCounts counts{};
-};
-struct JoinMeasured {
-  Measured operator()(Measured a, const Measured& b) const {
-    return {JoinReports{}(std::move(a.report), b.report),
-            JoinCounts{}(std::move(a.counts), b.counts)};
   }
 };
 
 /// A range of a mesh, from the PE that holds all of it.
 struct RangeLoad {
-  std::vector<Point> points;
-  std::vector<Tet> tets;
-};
-
-/// Which of your points are at these vertices? Answered in the same order.
-struct CornerQuery {
-  PeId from{};
-  std::vector<VertexId> ids;
-};
-struct CornerAnswer {
-  VertexId first = 0;
-  std::vector<Point> points;
+  std::vector<Point> points{};
+  std::vector<Tet> tets{};
 };
 
 /// Tetrahedra for the parts of one PE, part by part.
@@ -110,11 +77,12 @@ struct TetBatch {
   std::vector<Tet> tets{};
 };
 
-/// The vertices of some parts of one PE, part by part.
+/// Which of your points are at these vertices? Asks for those of some parts of one PE, part by part,
+/// or, without parts, for corners of the range of that PE.
 struct PointQuery {
   PeId from{}, to{};
   std::vector<std::int32_t> parts{};
-  std::vector<std::int32_t> sizes{};  ///< vertices per part
+  std::vector<std::int32_t> sizes{};  ///< vertices per part; of corners one size
   std::vector<VertexId> ids{};        ///< ascending in each part
 };
 /// A part that has ghosts of another one.
@@ -128,16 +96,16 @@ struct PointAnswer {
   std::vector<std::int32_t> sizes{};
   std::vector<VertexId> firsts{};  ///< the first vertex of each part
   std::vector<Point> points{};
-  std::vector<std::int32_t> owners{};
+  std::vector<std::int32_t> owners{};   ///< per point, if parts ask
   std::vector<std::int32_t> n_users{};  ///< per point, if there is a halo
   std::vector<std::int32_t> users{};    ///< the parts whose tetrahedra use the points
   std::vector<GhostUse> ghost_uses{};   ///< of the points that these parts own
 };
-/// Vertices that no tetrahedron uses, for the PE of the parts that own them. Most often none.
-struct UnusedPoints {
-  std::vector<std::int32_t> owners{};
-  std::vector<VertexId> ids{};
-  std::vector<Point> points{};
+/// A vertex of a part, as its keeper describes it.
+struct PartPoint {
+  VertexId id = 0;
+  std::int32_t owner = 0;
+  Point at{};
 };
 
 /// Which tetrahedra of your part are around these vertices?
@@ -146,10 +114,15 @@ struct AroundQuery {
   std::int32_t part = 0;
   std::vector<VertexId> vertices;
 };
+/// A tetrahedron of a halo. Its corners are ids in the whole mesh.
+struct HaloTet {
+  std::int32_t id = 0;
+  Tet corners{};
+  auto operator<=>(const HaloTet&) const = default;
+};
 struct AroundAnswer {
   std::int32_t asker = 0;
-  std::vector<std::int32_t> ids;
-  std::vector<Tet> tets;
+  std::vector<HaloTet> tets{};
 };
 
 /// Ghosts of one part in another one.
@@ -163,36 +136,44 @@ class Placer : public Group<Placer> {
  public:
   explicit Placer(const PlacerSetup& setup);
 
-  void receive_range(RangeLoad load);
-  /// Reads the ranges unless they were received, checks them, and asks for the corners that other
+  // Phase 1: reads and checks the mesh, and counts where to cut.
+
+  /// Reads the ranges, unless the load has them, checks them, and asks for the corners that other
   /// PEs keep.
-  void read(Callback<PlacerReport> target);
-  void answer_corners(CornerQuery query);
-  void receive_corners(const CornerAnswer& answer);
+  void read(RangeLoad load, Callback<PlacerReport> target);
   /// Checks the shapes of the tetrahedra, finds their cells in a cube around the mesh, and counts
   /// them for the first round of a CurveCut. Begins when the corners are here.
-  void measure(const Aabb& bounds, Callback<Measured> target);
-  void count(const CurveCut& cut, Callback<CellCounts> target);
+  void measure(const Aabb& bounds, Callback<PlacerReport> target);
+  /// Counts for a later round.
+  void count(const CurveCut& cut, Callback<PlacerReport> target);
   /// The end of a survey, when all corners have been asked for: evaluates the fields at the points.
-  void count_extent(Callback<SurveyReport> target);
-  /// Sends the tetrahedra to their parts, and asks for the points of the parts here when all of
-  /// their tetrahedra have arrived: the cut says how many these are.
+  void finish_survey(Callback<PlacerReport> target);
+
+  // Phase 2: tetrahedra go to their parts.
+
+  /// Asks for the points of the parts here when all of their tetrahedra have arrived: the cut says
+  /// how many these are.
   void send_tets(const CurveCut& cut);
   void receive_tets(TetBatch batch);
-  void receive_point_query(PointQuery query);
 
-  /// Decides about the owners, and answers all queries. Without a halo, finish() follows when the
-  /// points asked for are here.
-  void answer_points(Callback<PlacerReport> finished);
+  // Phase 3: keepers give points to the parts. Corners in phase 1 and points of the halo in phase 4
+  // are asked for alike.
+
+  /// Answers, or keeps the query until the answer is known.
+  void receive_query(PointQuery query);
+  /// Decides about the owners, and answers the queries of all parts. Without a halo, finish()
+  /// follows when the points asked for are here.
+  void answer_parts(Callback<PlacerReport> finished);
   void receive_points(const PointAnswer& answer);
-  void receive_unused(const UnusedPoints& unused);
+  /// Vertices that no tetrahedron uses, for the parts here that own them. Most often none.
+  void receive_unused(const std::vector<PartPoint>& unused);
+
+  // Phase 4: a halo, layer by layer, if there is one; then the parts are built.
 
   void ask_around();
   void answer_around(const AroundQuery& query);
   void receive_around(const AroundAnswer& answer);
   void ask_halo_points();
-  void answer_halo_points(const PointQuery& query);
-
   /// Builds the parts, and tells the owners of their ghosts. Without a halo, load_workers() follows
   /// when the ghosts of the parts here are known, and the points say from how many parts.
   void finish();
@@ -200,12 +181,6 @@ class Placer : public Group<Placer> {
   void load_workers();
 
  private:
-  /// A vertex of a part, as its keeper describes it.
-  struct PartPoint {
-    VertexId id = 0;
-    std::int32_t owner = 0;
-    Point at{};
-  };
   static bool by_id(const PartPoint& a, const PartPoint& b) { return a.id < b.id; }
   /// Replaces vertices by their positions in the set.
   static void number_corners(std::vector<Tet>& tets, const IdSet& vertices) {
@@ -226,11 +201,6 @@ class Placer : public Group<Placer> {
       auto operator<=>(const Seen&) const = default;
     };
     std::vector<Seen> others{};  // parts that use points found in the last layer
-    struct HaloTet {
-      std::int32_t id;
-      Tet corners;
-      auto operator<=>(const HaloTet&) const = default;
-    };
     std::vector<HaloTet> halo{};
     std::optional<IdSet> own_vertices{};  // for answer_around()
     std::vector<std::uint32_t> begin{};   // per own vertex, in `around`
@@ -267,7 +237,7 @@ class Placer : public Group<Placer> {
   void ask_corners();
   void measure_if_complete();
   void ask_points_if_complete();
-  void ask_points();
+  void make_drafts();
   void send_unused();
   void finish_if_complete();
   void load_if_complete();
@@ -275,11 +245,9 @@ class Placer : public Group<Placer> {
   /// Calls visit(keeper, ids of that keeper) for ascending ids.
   template <class Visit>
   void for_each_keeper(std::span<const VertexId> ids, const Visit& visit) const;
-  /// The points that the parts ask for, per keeper.
-  [[nodiscard]] std::vector<PointQuery> queries_of_parts() const;
-  /// Asks for the points of the parts; `Handler` answers, with receive_points().
-  template <auto Handler>
-  void send_queries();
+  /// Asks the keepers for the points of the parts.
+  void ask_points_of_parts();
+  void send_query(PointQuery query);
   [[nodiscard]] PointAnswer answer(const PointQuery& query) const;
   static void index_tets(Draft& part);
   void build(std::int32_t k, const std::vector<Formula>& formulas, FirstError& error);
@@ -293,23 +261,23 @@ class Placer : public Group<Placer> {
   std::vector<Tet> tets_;      // of the range, from first_tet_
   std::optional<IdSet> far_;   // corners of the range that others keep
   std::vector<Point> far_points_;
-  enum class Reading : std::uint8_t { before, refused, done } reading_ = Reading::before;
-  std::vector<CornerQuery> early_queries_;            // before the points were read
-  std::size_t n_corners_due_ = 0, n_points_due_ = 0;  // answers
-  std::size_t n_unused_due_ = 0;                      // messages
-  std::optional<Aabb> measures_;                      // from measure() on, until it begins
-  Callback<Measured> measured_;
+  /// What it knows of the points kept here.
+  enum class Knows : std::uint8_t { nothing, refused, points, owners } knows_ = Knows::nothing;
+  std::vector<PointQuery> queries_;  // that wait for it
+  std::size_t n_answers_due_ = 0;
+  std::size_t n_unused_due_ = 0;  // messages
+  std::optional<Aabb> measures_;  // from measure() on, until it begins
+  Callback<PlacerReport> measured_;
   MeshExtent extent_;                        // of the range, in a survey
   std::vector<std::uint8_t> used_;           // per point kept here, in a survey
   std::vector<std::uint64_t> cells_;         // per tetrahedron of the range
   std::uint64_t n_tets_here_ = 0;            // in batches_
   std::optional<std::uint64_t> n_tets_due_;  // from send_tets() on, until all are here
-  Callback<PlacerReport> finished_;          // from answer_points() on, until the parts are built
+  Callback<PlacerReport> finished_;          // from answer_parts() on, until the parts are built
   PlacerReport report_;
   std::vector<GhostUse> ghost_uses_;  // of parts here
   bool is_built_ = false;
   std::vector<TetBatch> batches_;
-  std::vector<PointQuery> queries_;
   std::vector<std::int32_t> owners_;        // per point kept here
   std::vector<std::uint32_t> users_begin_;  // if there is a halo: per point kept here, in users_
   std::vector<std::int32_t> users_;         // parts that use it

@@ -9,7 +9,7 @@
 namespace tess::m2m {
 
 void Placer::finish_if_complete() {
-  if (finished_ && !has_halo() && n_points_due_ == 0 && n_unused_due_ == 0) finish();
+  if (finished_ && !has_halo() && n_answers_due_ == 0 && n_unused_due_ == 0) finish();
 }
 
 void Placer::finish() {

@@ -13,14 +13,7 @@ constexpr std::int32_t no_owner = std::numeric_limits<std::int32_t>::max();
 
 }  // namespace
 
-template <auto Handler>
-void Placer::send_queries() {
-  std::vector<PointQuery> queries = queries_of_parts();
-  n_points_due_ = queries.size();
-  for (PointQuery& query : queries) group()[query.to].send<Handler>(std::move(query));
-}
-
-void Placer::ask_points() {
+void Placer::make_drafts() {
   // The ranges are in the order of the PEs, so the tetrahedra of a part are in ascending order.
   std::sort(batches_.begin(), batches_.end(),
             [](const TetBatch& a, const TetBatch& b) { return a.from < b.from; });
@@ -52,10 +45,9 @@ void Placer::ask_points() {
     part.points.resize(part.asked.size());
     if (!has_halo()) number_corners(part.mesh.tets, vertices);
   }
-  send_queries<&Placer::receive_point_query>();
 }
 
-std::vector<PointQuery> Placer::queries_of_parts() const {
+void Placer::ask_points_of_parts() {
   std::vector<PointQuery> queries;
   std::vector<std::int32_t> query_of(static_cast<std::size_t>(n_pes_), -1);
   for (std::size_t k = 0; k < parts_.size(); ++k) {
@@ -71,14 +63,26 @@ std::vector<PointQuery> Placer::queries_of_parts() const {
       query.ids.insert(query.ids.end(), ids.begin(), ids.end());
     });
   }
-  return queries;
+  for (PointQuery& query : queries) send_query(std::move(query));
 }
 
-void Placer::receive_point_query(PointQuery query) {
-  queries_.push_back(std::move(query));
+void Placer::send_query(PointQuery query) {
+  ++n_answers_due_;
+  const PeId to = query.to;
+  group()[to].send<&Placer::receive_query>(std::move(query));
 }
 
-void Placer::answer_points(Callback<PlacerReport> finished) {
+void Placer::receive_query(PointQuery query) {
+  const bool of_corners = query.parts.empty();
+  if (knows_ == Knows::owners || (knows_ == Knows::points && of_corners)) {
+    if (setup_.is_survey) mark_used(query.ids);
+    group()[query.from].send<&Placer::receive_points>(answer(query));
+  } else if (knows_ != Knows::refused) {  // a refused mesh ends here
+    queries_.push_back(std::move(query));
+  }
+}
+
+void Placer::answer_parts(Callback<PlacerReport> finished) {
   finished_ = std::move(finished);
   const std::size_t n = points_.size();
   owners_.assign(n, no_owner);
@@ -101,6 +105,7 @@ void Placer::answer_points(Callback<PlacerReport> finished) {
     for_each_use([&](std::size_t v, std::int32_t part) { users_[next[v]++] = part; });
   }
   send_unused();
+  knows_ = Knows::owners;
   std::vector<GhostUse> uses;
   if (!has_halo()) {
     for_each_use([&](std::size_t v, std::int32_t part) {
@@ -127,17 +132,15 @@ void Placer::send_unused() {
   const GlobalId end = first_point_ + static_cast<GlobalId>(points_.size());
   for (GlobalId v = first_point_; v < end;) {
     const PeId to = home_of(owner_of_unused(v));
-    UnusedPoints unused;
+    std::vector<PartPoint> unused;
     for (const GlobalId stop = std::min(end, first_unused_of(first_part_of(to.value + 1)));
          v < stop; ++v) {
       const auto at = static_cast<std::size_t>(v - first_point_);
       if (owners_[at] != no_owner) continue;
       owners_[at] = owner_of_unused(v);
-      unused.owners.push_back(owners_[at]);
-      unused.ids.push_back(static_cast<VertexId>(v));
-      unused.points.push_back(points_[at]);
+      unused.push_back({static_cast<VertexId>(v), owners_[at], points_[at]});
     }
-    report_.n_unused += unused.ids.size();
+    report_.n_unused += unused.size();
     group()[to].send<&Placer::receive_unused>(std::move(unused));
   }
 }
@@ -147,17 +150,18 @@ PointAnswer Placer::answer(const PointQuery& query) const {
   answer.parts = query.parts;
   answer.sizes = query.sizes;
   answer.points.reserve(query.ids.size());
-  answer.owners.reserve(query.ids.size());
+  if (!query.parts.empty()) answer.owners.reserve(query.ids.size());
   for (const VertexId v : query.ids) {
     const auto at = static_cast<std::size_t>(v - first_point_);
     answer.points.push_back(points_[at]);
+    if (query.parts.empty()) continue;
     answer.owners.push_back(owners_[at]);
     if (!has_halo()) continue;
     answer.n_users.push_back(static_cast<std::int32_t>(users_begin_[at + 1] - users_begin_[at]));
     answer.users.insert(answer.users.end(), users_.begin() + users_begin_[at],
                         users_.begin() + users_begin_[at + 1]);
   }
-  answer.firsts.reserve(query.parts.size());
+  answer.firsts.reserve(query.sizes.size());
   std::size_t at = 0;
   for (const std::int32_t size : query.sizes) {
     answer.firsts.push_back(query.ids[at]);
@@ -167,6 +171,13 @@ PointAnswer Placer::answer(const PointQuery& query) const {
 }
 
 void Placer::receive_points(const PointAnswer& answer) {
+  --n_answers_due_;
+  if (answer.parts.empty()) {
+    std::copy(answer.points.begin(), answer.points.end(),
+              far_points_.begin() + far_->rank(answer.firsts.front()));
+    measure_if_complete();
+    return;
+  }
   std::size_t at = 0;
   std::size_t user = 0;
   for (std::size_t run = 0; run < answer.parts.size(); ++run) {
@@ -183,15 +194,11 @@ void Placer::receive_points(const PointAnswer& answer) {
     }
   }
   ghost_uses_.insert(ghost_uses_.end(), answer.ghost_uses.begin(), answer.ghost_uses.end());
-  --n_points_due_;
   finish_if_complete();
 }
 
-void Placer::receive_unused(const UnusedPoints& unused) {
-  for (std::size_t i = 0; i < unused.ids.size(); ++i) {
-    const std::int32_t owner = unused.owners[i];
-    part(owner).unused.push_back({unused.ids[i], owner, unused.points[i]});
-  }
+void Placer::receive_unused(const std::vector<PartPoint>& unused) {
+  for (const PartPoint& point : unused) part(point.owner).unused.push_back(point);
   --n_unused_due_;
   finish_if_complete();
 }
@@ -238,20 +245,18 @@ void Placer::answer_around(const AroundQuery& query) {
                  asked.around.begin() + asked.begin[at + 1]);
   }
   sort_unique(found);
-  AroundAnswer answer{query.asker, {}, {}};
+  AroundAnswer answer{query.asker};
   for (const std::int32_t t : found) {
-    answer.ids.push_back(
-        static_cast<std::int32_t>(asked.mesh.tet_ids[static_cast<std::size_t>(t)]));
-    answer.tets.push_back(asked.mesh.tets[static_cast<std::size_t>(t)]);
+    const auto at = static_cast<std::size_t>(t);
+    answer.tets.push_back({static_cast<std::int32_t>(asked.mesh.tet_ids[at]), asked.mesh.tets[at]});
   }
   const PeId to = home_of(query.asker);
   group()[to].send<&Placer::receive_around>(std::move(answer));
 }
 
 void Placer::receive_around(const AroundAnswer& answer) {
-  Draft& to = part(answer.asker);
-  for (std::size_t i = 0; i < answer.ids.size(); ++i)
-    to.halo.push_back({answer.ids[i], answer.tets[i]});
+  std::vector<HaloTet>& halo = part(answer.asker).halo;
+  halo.insert(halo.end(), answer.tets.begin(), answer.tets.end());
 }
 
 void Placer::ask_halo_points() {
@@ -269,11 +274,7 @@ void Placer::ask_halo_points() {
     part.n_known = part.points.size();
     part.points.resize(part.n_known + part.asked.size());
   }
-  send_queries<&Placer::answer_halo_points>();
-}
-
-void Placer::answer_halo_points(const PointQuery& query) {
-  group()[query.from].send<&Placer::receive_points>(answer(query));
+  ask_points_of_parts();
 }
 
 }  // namespace tess::m2m

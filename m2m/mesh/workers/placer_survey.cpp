@@ -17,8 +17,8 @@ void Placer::mark_used(std::span<const VertexId> vertices) {
   }
 }
 
-void Placer::count_extent(Callback<SurveyReport> target) {
-  SurveyReport report;
+void Placer::finish_survey(Callback<PlacerReport> target) {
+  PlacerReport report;
   report.extent = extent_;
   used_.resize(points_.size());
   report.n_unused = static_cast<std::uint64_t>(std::count(used_.begin(), used_.end(), 0));
@@ -35,7 +35,7 @@ void Placer::count_extent(Callback<SurveyReport> target) {
       break;
     }
   }
-  contribute(JoinSurveys{}, std::move(report), std::move(target));
+  contribute(JoinReports{}, std::move(report), std::move(target));
 }
 
 }  // namespace tess::m2m

@@ -32,4 +32,17 @@ struct DistributedMesh {
                                       std::int32_t n_parts, PartitionMethod method,
                                       std::int32_t halo_layers = 0);
 
+/// What couplings see of values in tetrahedra.
+enum class CellForm : std::uint8_t {
+  points,    ///< values at the centroids, without a mesh
+  constant,  ///< Centring::cells
+  linear,    ///< Centring::corners
+  limited,   ///< the same, with CornerLimit::neighbours
+};
+
+/// The same for fields in tetrahedra, with the halo that the form needs.
+[[nodiscard]] DistributedMesh scatter_cells(const TetMesh& mesh, const std::vector<Field>& fields,
+                                            std::int32_t n_parts, PartitionMethod method,
+                                            CellForm form);
+
 }  // namespace tess::m2m

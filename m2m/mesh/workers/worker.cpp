@@ -18,8 +18,11 @@ Outcome JoinOutcomes::operator()(Outcome a, const Outcome& b) const {
 void Worker::load(PartLoad load) {
   part_ = std::move(load.part);
   n_components_ = load.n_components;
+  centring_ = load.centring;
   values_ = std::move(load.values);
-  status_.assign(static_cast<std::size_t>(part_.n_owned), Status::outside);
+  if (centring_ == Centring::corners)
+    values_ = element_corners(view_of(part_), load.elements, values_, n_components_, load.limit);
+  status_.assign(own_ids().size(), Status::outside);
   distance_.assign(status_.size(), 0);
 }
 
@@ -35,14 +38,13 @@ Worker::Pending& Worker::pending_of(CouplingId coupling) {
   Pending& pending = pending_[coupling];
   if (pending.is_new.empty()) {
     pending.values.resize(values_.size());
-    pending.is_new.resize(part_.points.size());
+    pending.is_new.resize(has_nodes() ? part_.points.size() : part_.tets.size());
   }
   return pending;
 }
 
 std::span<double> Worker::pending(CouplingId coupling) {
-  return std::span(pending_of(coupling).values)
-      .first(static_cast<std::size_t>(part_.n_owned) * n_components_);
+  return std::span(pending_of(coupling).values).first(own_ids().size() * n_components_);
 }
 
 void Worker::received(CouplingId coupling) {
@@ -92,12 +94,9 @@ void Worker::commit(CouplingId coupling) {
 }
 
 void Worker::gather(Callback<Outcome> target) {
-  const auto owned = static_cast<std::ptrdiff_t>(part_.n_owned);
-  const auto n = static_cast<std::ptrdiff_t>(n_components_);
-  Outcome outcome{{part_.point_ids.begin(), part_.point_ids.begin() + owned},
-                  status_,
-                  {values_.begin(), values_.begin() + owned * n},
-                  distance_};
+  const std::span<const GlobalId> ids = own_ids();
+  const auto values = std::span(values_).first(ids.size() * n_components_);
+  Outcome outcome{{ids.begin(), ids.end()}, status_, {values.begin(), values.end()}, distance_};
   contribute(JoinOutcomes{}, std::move(outcome), std::move(target));
 }
 

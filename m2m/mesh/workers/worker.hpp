@@ -1,5 +1,6 @@
-// A chare that holds one part of a mesh that the library has cut, and the values at its vertices.
-// It is a Piece like those of an application, and updates its ghosts itself.
+// A chare that holds one part of a mesh that the library has cut, and the values at its vertices or
+// in its tetrahedra. It is a Piece like those of an application, and updates its ghosts itself.
+// Its own rows are those of the vertices that it owns, or of its own tetrahedra.
 //
 // An application of a coupling changes the values in a second step, commit(), which is a broadcast
 // as the start is; all Workers of a mesh receive broadcasts in the same order. So a coupling sees
@@ -11,6 +12,8 @@
 #include "m2m/mesh/workers/norm_sums.hpp"
 #include "m2m/mesh/workers/value_keeper.hpp"
 #include "m2m/rigid_motion.hpp"
+#include "m2m/rows/reconstruct/element_corners.hpp"
+#include "m2m/transfer_kind.hpp"
 
 #include <cstdint>
 #include <map>
@@ -24,7 +27,12 @@ namespace tess::m2m {
 struct PartLoad {
   MeshPart part;
   std::uint64_t n_components = 0;
-  std::vector<double> values;  ///< part.points.size() × n_components, row-major
+  std::vector<double> values;  ///< points of the part, or tetrahedra, × n_components; row-major
+  Centring centring = Centring::nodes;
+  /// With Centring::corners the values are those of the tetrahedra, and the Worker makes linear
+  /// functions of them (element_corners.hpp).
+  std::vector<GlobalId> elements{};
+  CornerLimit limit{};
 };
 
 /// New values for the ghosts that a Worker holds.
@@ -40,10 +48,10 @@ struct GhostStatus {
   std::vector<Status> status;
 };
 
-/// The vertices that a Worker owns, with status and values, as gathered from a mesh. Before the
-/// first transfer into the mesh every status is `outside`.
+/// The own rows of Workers, with status and values, as gathered from a mesh. Before the first
+/// transfer into the mesh every status is `outside`.
 struct Outcome {
-  std::vector<GlobalId> points;
+  std::vector<GlobalId> points;  ///< the vertices; tetrahedra if the values are those of cells
   std::vector<Status> status;    ///< per vertex, from the transfer into the mesh that ended last
   std::vector<double> values;    ///< points.size() × n_components, row-major
   std::vector<double> distance;  ///< per vertex, from the same (Piece::distance())
@@ -61,15 +69,17 @@ class Worker : public Chare<Worker, Index1>, public Piece<Worker> {
 
   [[nodiscard]] MeshView mesh_view() const;
   [[nodiscard]] std::span<const double> values() const { return values_; }
-  /// New values of the points owned, until commit().
+  /// New values of its own rows, until commit().
   [[nodiscard]] std::span<double> pending(CouplingId coupling);
   /// Sends new values to the ghosts.
   void received(CouplingId coupling);
 
   void receive_ghosts(const GhostRows& ghosts);
   void commit(CouplingId coupling);
-  /// Contributes the owned vertices with their values to a reduction.
+  /// Contributes its own rows to a reduction.
   void gather(Callback<Outcome> target);
+
+  // The following are for values at vertices.
 
   /// Sends the status of owned points to their ghosts, for measure().
   void share_status();
@@ -84,25 +94,33 @@ class Worker : public Chare<Worker, Index1>, public Piece<Worker> {
 
   template <class Ar>
   void serialize(Ar& ar) {
-    ar(couplings, part_, n_components_, values_, status_, distance_, ghost_status_, pending_);
+    ar(couplings, part_, n_components_, centring_, values_, status_, distance_, ghost_status_,
+       pending_);
   }
 
  private:
   struct Pending {
-    std::vector<double> values{};        // rows of all points; valid where is_new
-    std::vector<std::uint8_t> is_new{};  // per point
+    std::vector<double> values{};        // all rows; valid where is_new
+    std::vector<std::uint8_t> is_new{};  // per row
     template <class Ar>
     void serialize(Ar& ar) {
       ar(values, is_new);
     }
   };
   [[nodiscard]] Pending& pending_of(CouplingId coupling);
+  [[nodiscard]] bool has_nodes() const { return centring_ == Centring::nodes; }
+  /// The ids of its own rows.
+  [[nodiscard]] std::span<const GlobalId> own_ids() const {
+    const std::span<const GlobalId> all = has_nodes() ? part_.point_ids : part_.tet_ids;
+    return all.first(static_cast<std::size_t>(has_nodes() ? part_.n_owned : part_.n_own_tets));
+  }
 
   MeshPart part_;
   std::uint64_t n_components_ = 0;
-  std::vector<double> values_;        // of all points, row-major
-  std::vector<Status> status_;        // per owned point
-  std::vector<double> distance_;      // per owned point
+  Centring centring_ = Centring::nodes;
+  std::vector<double> values_;        // of all points, tetrahedra or corners, row-major
+  std::vector<Status> status_;        // per own row
+  std::vector<double> distance_;      // per own row
   std::vector<Status> ghost_status_;  // per ghost, after share_status()
   std::map<CouplingId, Pending> pending_;
 };
