@@ -50,7 +50,7 @@ void AnyPiece::m2m_ask(CouplingId id) {
   for (auto& [source, choice] : step.choices)
     m2m_send<&AnyPiece::m2m_choose>(to.setup.source, source, std::move(choice));
   for (const collide::OwnerId piece : step.greetings)
-    m2m_send<&AnyPiece::m2m_receive>(to.setup.target, piece, Answer{id, {}, Greeting{}});
+    m2m_send<&AnyPiece::m2m_receive>(to.setup.target, piece, SearchAnswer{id, {}, Greeting{}});
   Ledger& ledger = to.setup.ledger.local();
   if (step.then == SearchStep::Then::sources) ledger.add_waiting();
   if (step.then != SearchStep::Then::nothing) return;
@@ -58,7 +58,7 @@ void AnyPiece::m2m_ask(CouplingId id) {
   ledger.add(to.found().worst);
   if (to.is_alone()) ledger.add_alone();
 }
-void AnyPiece::m2m_query(Query query) {
+void AnyPiece::m2m_query(SearchQuery query) {
   const CouplingId id = query.coupling;
   const bool are_points = std::holds_alternative<DonorQuery>(query.what);
   SourceSide& from = couplings.source(id);
@@ -76,7 +76,7 @@ void AnyPiece::m2m_answer(CouplingId id) {
     m2m_send<&AnyPiece::m2m_receive>(from.setup.target, target, std::move(answer));
   from.setup.ledger.local().add(Tally{.n_candidates = n_tested});
 }
-void AnyPiece::m2m_receive(Answer answer) {
+void AnyPiece::m2m_receive(SearchAnswer answer) {
   const CouplingId id = answer.coupling;
   if (couplings.target(id).add(std::move(answer))) m2m_ask(id);
 }

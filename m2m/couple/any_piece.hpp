@@ -3,28 +3,28 @@
 // state of its couplings. The work is in SourceSide and TargetSide. Kinds that interpolate and
 // conservative kinds take the same steps:
 //
-//   step     at the source              message         at the target
-//   -------  -------------------------  --------------  ------------------------------------------
-//   submit   boxes of its cover         → collider ←    boxes around its points or tetrahedra
-//   hits                                                collects the source pieces near
-//   ask                                 ← Query         sends its points or tetrahedra there
-//   answer   locates points, all that   Answer →        keeps the best candidate of each point; adds
-//            have arrived in one pass;                  up how much of each tetrahedron is covered
-//            makes rows of overlaps
-//   name     names itself (Ledger)                      asks for nearest vertices likewise, if points
-//                                                       outside need them
-//   choose   keeps what was chosen      ← Choice        decides
-//   give     multiplies                 GivenValues →   writes a round that is complete, with
-//                                                       conservative kinds after a projection
+//   step     at the source              message          at the target
+//   -------  -------------------------  ---------------  -----------------------------------------
+//   submit   boxes of its cover         → collider ←     boxes around its points or tetrahedra
+//   hits                                                 collects the source pieces near
+//   ask                                 ← SearchQuery    sends its points or tetrahedra there
+//   answer   locates points, all that   SearchAnswer →   keeps the best candidate of each point;
+//            have arrived in one pass;                   adds up how much of each tetrahedron is
+//            makes rows of overlaps                      covered
+//   name     names itself (Ledger)                       asks for nearest vertices likewise, if
+//                                                        points outside need them
+//   choose   keeps what was chosen      ← Choice         decides
+//   give     multiplies                 GivenValues →    writes a round that is complete, with
+//                                                        conservative kinds after a projection
 //
-// Two things only conservative kinds have. A source piece gives away the rows that others have a
-// part of, too: PartialRows are its Answer to the Choice. And the pieces of the target exchange the
-// values of points that they share: a PointDirectory tells them before `ask` which ones these are
-// (SharedPoints), those that have sources greet the others in the end (Greeting), and GivenValues
-// go between them in each step of a projection.
+// Only conservative kinds have two more things. A source piece gives away the rows that others have
+// a part of, too: PartialRows are its SearchAnswer to the Choice. And the pieces of the target
+// exchange the values of points that they share: before `ask` a PointDirectory reports to them
+// which ones these are (SharedPoints), those that have sources greet the others in the end
+// (Greeting), and GivenValues go between them in each step of a projection.
 //
-// A target piece that no source piece gives values attaches itself to one by a Choice, which
-// announces to it the rounds that pieces start.
+// A target piece that no source piece gives values attaches itself to one by a Choice. That source
+// piece announces to it the rounds that pieces start.
 #pragma once
 
 #include "collide/hit.hpp"
@@ -46,8 +46,8 @@ namespace tess::m2m {
 
 struct CouplingSetup;
 struct SourcePiece;
-struct Query;
-struct Answer;
+struct SearchQuery;
+struct SearchAnswer;
 struct Choice;
 struct GivenValues;
 struct GivenRows;
@@ -75,9 +75,9 @@ class AnyPiece {
   void m2m_submit(const CouplingSetup& setup, collide::ModelId side);
   void m2m_hits(CouplingId id, const collide::Hits& hits);
   void m2m_ask(CouplingId id);
-  void m2m_query(Query query);
+  void m2m_query(SearchQuery query);
   void m2m_answer(CouplingId id);
-  void m2m_receive(Answer answer);
+  void m2m_receive(SearchAnswer answer);
   void m2m_name(CouplingId id);
   void m2m_receive_names(CouplingId id, const std::vector<SourcePiece>& sources);
   void m2m_choose(Choice choice);

@@ -82,7 +82,7 @@ const Callback<collide::Hits>::Kind hits_kind{naming::name_of<&send_hits>(), &se
 
 void send_shared_points(const Callback<SharedPoints>& callback, SharedPoints&& shared) {
   const auto [target, coupling] = from_bytes<std::tuple<PieceArray, CouplingId>>(callback.where());
-  target.send<&AnyPiece::m2m_receive>(shared.piece, Answer{coupling, {}, std::move(shared)});
+  target.send<&AnyPiece::m2m_receive>(shared.piece, SearchAnswer{coupling, {}, std::move(shared)});
 }
 const Callback<SharedPoints>::Kind shared_points_kind{naming::name_of<&send_shared_points>(),
                                                       &send_shared_points};

@@ -64,7 +64,7 @@ struct NearestQuery {
   std::vector<double> squared_reaches;  ///< per point: farther vertices are not of interest
 };
 /// From a target piece to a source piece. TargetTets: which of your tetrahedra overlap these?
-struct Query {
+struct SearchQuery {
   CouplingId coupling{};
   collide::OwnerId from{};
   std::variant<DonorQuery, NearestQuery, TargetTets> what;
@@ -99,7 +99,7 @@ struct PartialRows {
 /// From a target piece to those beside it: it takes part in projections.
 struct Greeting {};
 /// To a target piece, in a search. SharedPoints are the directory's reply to its reports.
-struct Answer {
+struct SearchAnswer {
   CouplingId coupling{};
   collide::OwnerId from{};
   std::variant<DonorAnswer, NearestAnswer, OverlapAnswer, PartialRows, SharedPoints, Greeting> what;

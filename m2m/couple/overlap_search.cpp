@@ -102,9 +102,9 @@ std::array<std::uint32_t, 4> OverlapSearch::places_of(const MeshView& mesh,
   return places;
 }
 
-Addressed<Query> OverlapSearch::queries(CouplingId id, const MeshView& mesh) {
+Addressed<SearchQuery> OverlapSearch::queries(CouplingId id, const MeshView& mesh) {
   const std::size_t n_places = to_cells_ ? numbers_.size() : static_cast<std::size_t>(mesh.n_owned);
-  Addressed<Query> out;
+  Addressed<SearchQuery> out;
   std::vector<std::int32_t> unknown_of(volumes_.size(), -1);
   for (auto& [source, asked] : asked_) {
     sort_unique(asked.boxes);
@@ -141,7 +141,7 @@ Addressed<Query> OverlapSearch::queries(CouplingId id, const MeshView& mesh) {
       to.unknowns.push_back(unknowns);
     }
     for (const std::uint32_t place : numbered) unknown_of[place] = -1;
-    out.emplace_back(source, Query{id, {}, std::move(to)});
+    out.emplace_back(source, SearchQuery{id, {}, std::move(to)});
   }
   cover_ = {};
   return out;

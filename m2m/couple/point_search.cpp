@@ -49,8 +49,8 @@ SearchStep PointSearch::next(const CouplingSetup& setup, const MeshView& mesh, T
   return step;
 }
 
-Addressed<Query> PointSearch::point_queries(CouplingId id, const MeshView& mesh) {
-  Addressed<Query> out;
+Addressed<SearchQuery> PointSearch::point_queries(CouplingId id, const MeshView& mesh) {
+  Addressed<SearchQuery> out;
   for (auto& [source, asked] : asked_) {
     sort_unique_boxes(asked.boxes);
     sort_unique_boxes(asked.source_boxes);
@@ -61,7 +61,7 @@ Addressed<Query> PointSearch::point_queries(CouplingId id, const MeshView& mesh)
         query.points.push_back(mesh.points[row]);
       }
     asked.boxes = {};
-    out.emplace_back(source, Query{id, {}, std::move(query)});
+    out.emplace_back(source, SearchQuery{id, {}, std::move(query)});
   }
   cover_ = {};
   return out;
@@ -112,7 +112,7 @@ void PointSearch::name_sources(const MeshView& mesh, std::span<const SourcePiece
   stage_ = Stage::ask_nearest;
 }
 
-Addressed<Query> PointSearch::nearest_queries(CouplingId id, const MeshView& mesh) {
+Addressed<SearchQuery> PointSearch::nearest_queries(CouplingId id, const MeshView& mesh) {
   std::map<collide::OwnerId, NearestQuery> queries;
   std::erase_if(to_ask_, [&](std::uint32_t key) {
     NearestSoFar& so_far = nearest_[key];
@@ -126,8 +126,9 @@ Addressed<Query> PointSearch::nearest_queries(CouplingId id, const MeshView& mes
     query.squared_reaches.push_back(so_far.squared_distance);
     return false;
   });
-  Addressed<Query> out;
-  for (auto& [source, query] : queries) out.emplace_back(source, Query{id, {}, std::move(query)});
+  Addressed<SearchQuery> out;
+  for (auto& [source, query] : queries)
+    out.emplace_back(source, SearchQuery{id, {}, std::move(query)});
   return out;
 }
 

@@ -61,10 +61,10 @@ class PointSearch {
     NearestParts::RankedPart asked{};
   };
 
-  [[nodiscard]] Addressed<Query> point_queries(CouplingId id, const MeshView& mesh);
+  [[nodiscard]] Addressed<SearchQuery> point_queries(CouplingId id, const MeshView& mesh);
   void list_outside(TransferKind kind);
   /// The next queries for points that need a nearest vertex; none if all are answered.
-  [[nodiscard]] Addressed<Query> nearest_queries(CouplingId id, const MeshView& mesh);
+  [[nodiscard]] Addressed<SearchQuery> nearest_queries(CouplingId id, const MeshView& mesh);
   /// What each source piece that was asked shall send.
   [[nodiscard]] Addressed<Choice> choices(const CouplingSetup& setup, const MeshView& mesh,
                                           TargetFound& found);

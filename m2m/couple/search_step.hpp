@@ -18,7 +18,7 @@ struct SearchStep {
     nothing,  ///< the search of this piece has ended
   };
   Then then = Then::answers;
-  Addressed<Query> queries{};
+  Addressed<SearchQuery> queries{};
   Addressed<Choice> choices{};
   std::vector<collide::OwnerId> greetings{};
 };

@@ -1,4 +1,7 @@
-// Interpolation: the donors of target points, and the values that they give.
+// Interpolation: the donors of target points, and the values that they give. A Donor is a row of
+// four weights. As Rows they took 56 bytes per point in place of 48, and an application of one
+// component about twice as long (1.4 in place of .7 ms for 180 000 points). They would also lose
+// that a weight of 0 takes nothing of NaN, and the corners that a value is clamped to.
 #include "m2m/couple/source_side.hpp"
 #include "m2m/rows/reconstruct/gradients.hpp"
 #include "m2m/rows/reconstruct/second_order.hpp"

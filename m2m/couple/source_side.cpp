@@ -21,16 +21,16 @@ std::vector<Aabb> SourceSide::start_search(const MeshView& mesh) {
   return cover_.boxes;
 }
 
-bool SourceSide::add(Query query) {
+bool SourceSide::add(SearchQuery query) {
   queries_.push_back(std::move(query));
   return queries_.size() == 1;
 }
 
-Addressed<Answer> SourceSide::answers(const MeshView& mesh, std::uint64_t& n_tested) {
-  std::vector<Query> queries = std::exchange(queries_, {});
+Addressed<SearchAnswer> SourceSide::answers(const MeshView& mesh, std::uint64_t& n_tested) {
+  std::vector<SearchQuery> queries = std::exchange(queries_, {});
   std::vector<std::uint32_t> boxes;
   std::vector<std::span<const Point>> lists;
-  for (const Query& query : queries)
+  for (const SearchQuery& query : queries)
     if (const auto* of_points = std::get_if<DonorQuery>(&query.what)) {
       boxes.insert(boxes.end(), of_points->boxes.begin(), of_points->boxes.end());
       lists.emplace_back(of_points->points);
@@ -38,10 +38,10 @@ Addressed<Answer> SourceSide::answers(const MeshView& mesh, std::uint64_t& n_tes
   sort_unique_boxes(boxes);
   std::vector<BestDonors> located;
   if (!lists.empty()) located = best_donors(mesh, cover_, boxes, lists, setup.tolerance, n_tested);
-  Addressed<Answer> out;
+  Addressed<SearchAnswer> out;
   auto next = located.begin();
-  for (Query& query : queries) {
-    out.emplace_back(query.from, Answer{setup.id, {}, {}});
+  for (SearchQuery& query : queries) {
+    out.emplace_back(query.from, SearchAnswer{setup.id, {}, {}});
     auto& what = out.back().second.what;
     if (const auto* tets = std::get_if<TargetTets>(&query.what))
       what = answer_overlaps(mesh, query.from, *tets, n_tested);
@@ -53,12 +53,12 @@ Addressed<Answer> SourceSide::answers(const MeshView& mesh, std::uint64_t& n_tes
   return out;
 }
 
-Addressed<Answer> SourceSide::choose(const MeshView& mesh, Choice choice) {
-  Addressed<Answer> out;
+Addressed<SearchAnswer> SourceSide::choose(const MeshView& mesh, Choice choice) {
+  Addressed<SearchAnswer> out;
   if (choice.is_alone)
     attached_.push_back(choice.from);
   else if (setup.is_conservative())
-    out.emplace_back(choice.from, Answer{setup.id, {}, choose_rows(mesh, choice)});
+    out.emplace_back(choice.from, SearchAnswer{setup.id, {}, choose_rows(mesh, choice)});
   else
     choose_donors(choice);
   return out;

@@ -34,13 +34,13 @@ class SourceSide {
   [[nodiscard]] std::vector<Aabb> start_search(const MeshView& mesh);
   [[nodiscard]] bool has_kept_cover() const { return stays_ == SameMesh::Answer::same; }
   /// Keeps a query. Returns true if no other waits for answers().
-  [[nodiscard]] bool add(Query query);
+  [[nodiscard]] bool add(SearchQuery query);
   /// The answers to all queries that wait: points are located in one pass over the tetrahedra near
   /// to them. Adds to `n_tested` how many pairs of a tetrahedron and a point in its box, or of
   /// tetrahedra whose boxes overlap, were looked at.
-  [[nodiscard]] Addressed<Answer> answers(const MeshView& mesh, std::uint64_t& n_tested);
+  [[nodiscard]] Addressed<SearchAnswer> answers(const MeshView& mesh, std::uint64_t& n_tested);
   /// Ends the search with a target piece. Returns the answer that it waits for, if it does.
-  [[nodiscard]] Addressed<Answer> choose(const MeshView& mesh, Choice choice);
+  [[nodiscard]] Addressed<SearchAnswer> choose(const MeshView& mesh, Choice choice);
 
   /// Calls send(target piece, values) for every target piece that gets values from this one.
   /// `values`: of all points of the piece, n_points × n_components, row-major; or a row per
@@ -98,7 +98,7 @@ class SourceSide {
   SameMesh::Answer stays_ = SameMesh::Answer::moved;  // in the last search
   std::uint64_t n_rows_ = 0;                          // of values, in the last search
   Cover cover_;
-  std::vector<Query> queries_;               // not answered yet
+  std::vector<SearchQuery> queries_;         // not answered yet
   std::map<collide::OwnerId, Given> given_;  // per target piece
   std::vector<collide::OwnerId> attached_;
   std::map<std::uint64_t, std::uint32_t> rounds_;  // per channel

@@ -30,7 +30,7 @@ void TargetSide::add(const collide::Hits& hits) {
     std::get<OverlapSearch>(search_).add(hits);
 }
 
-bool TargetSide::add(Answer answer) {
+bool TargetSide::add(SearchAnswer answer) {
   if (const auto* shared = std::get_if<SharedPoints>(&answer.what)) {
     for (const SharedPoint& point : shared->points) {
       Neighbour& neighbour = neighbours_[point.other];

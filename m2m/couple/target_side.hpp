@@ -32,7 +32,7 @@ class TargetSide {
                                                        collide::OwnerId me) const;
   void add(const collide::Hits& hits);
   /// Returns true if the search goes on by next_step().
-  [[nodiscard]] bool add(Answer answer);
+  [[nodiscard]] bool add(SearchAnswer answer);
   /// `sources`: all source pieces, sorted by owner; or the first one, if no piece asks for all.
   /// Returns the same.
   [[nodiscard]] bool name_sources(const MeshView& mesh, std::span<const SourcePiece> sources);
