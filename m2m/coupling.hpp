@@ -133,8 +133,7 @@ class AnyCoupling {
   struct State;
 
   Task collide_covers();
-  TaskOf<LedgerPage> find_donors();
-  Task find_overlaps();
+  TaskOf<LedgerPage> find_sources();
 
   std::unique_ptr<State> state_;
 };

@@ -1,31 +1,30 @@
 // What couplings see of a chare that holds a piece of a mesh, whatever its class is: its mesh, the
 // entry methods that receive the messages of searches and applications (messages.hpp), and the
-// state of its couplings. The work is in SourceSide and TargetSide.
+// state of its couplings. The work is in SourceSide and TargetSide. Kinds that interpolate and
+// conservative kinds take the same steps:
 //
-//   step       at the source            message         at the target
-//   ---------  -----------------------  --------------  --------------------------------------
-//   submit     boxes of its cover       → collider ←    boxes around its points
-//   hits                                                collects the source pieces near
-//   ask                                 ← DonorQuery    sends its points there
-//   answer     locates the points,      DonorAnswer →   keeps the best candidate of each
-//              those of all queries that have arrived in one pass over its tetrahedra
-//   outside    its nearest vertex       ← NearestQuery  if the policy says so
-//                                       NearestAnswer →
-//   choose     keeps what was chosen    ← Choice        decides
-//   attach     remembers it             ←               if no source piece gives it values
-//   give       interpolates             GivenValues →   writes a round that is complete
+//   step     at the source              message          at the target
+//   -------  -------------------------  ---------------  -----------------------------------------
+//   submit   boxes of its cover         → collider ←     boxes around its points or tetrahedra
+//   hits                                                 collects the source pieces near
+//   ask                                 ← SearchQuery    sends its points or tetrahedra there
+//   answer   locates points, all that   SearchAnswer →   keeps the best candidate of each point;
+//            have arrived in one pass;                   adds up how much of each tetrahedron is
+//            makes rows of overlaps                      covered
+//   name     names itself (Ledger)                       asks for nearest vertices likewise, if
+//                                                        points outside need them
+//   choose   keeps what was chosen      ← Choice         decides
+//   give     multiplies                 GivenValues →    writes a round that is complete, with
+//                                                        conservative kinds after a projection
 //
-// For conservative couplings it is in OverlapSource and OverlapTarget (overlap_messages.hpp):
+// Only conservative kinds have two more things. A source piece gives away the rows that others have
+// a part of, too: PartialRows are its SearchAnswer to the Choice. And the pieces of the target
+// exchange the values of points that they share: before `ask` a PointDirectory reports to them
+// which ones these are (SharedPoints), those that have sources greet the others in the end
+// (Greeting), and GivenValues go between them in each step of a projection.
 //
-//   submit     boxes of its cover       → collider ←    boxes of its cover; reports its points
-//   hits                                                collects the source pieces near
-//   ask                                 ← OverlapQuery  sends its tetrahedra there
-//   answer     rows of weights          OverlapAnswer → adds up what is covered
-//   share                               ← SharedRows    names the rows of several source pieces
-//   part       gives these away         PartialRows →   adds them up
-//   finish                                              masses; reports to the pieces beside it
-//   give       loads                    GivenValues →   starts a projection
-//   solve                                               GhostValues to and from pieces beside it
+// A target piece that no source piece gives values attaches itself to one by a Choice. That source
+// piece announces to it the rounds that pieces start.
 #pragma once
 
 #include "collide/hit.hpp"
@@ -46,23 +45,14 @@ struct Hits;
 namespace tess::m2m {
 
 struct CouplingSetup;
-struct DonorQuery;
-struct DonorAnswer;
-struct NearestQuery;
-struct NearestAnswer;
+struct SourcePiece;
+struct SearchQuery;
+struct SearchAnswer;
 struct Choice;
 struct GivenValues;
 struct GivenRows;
-struct SourcePiece;
-struct OverlapQuery;
-struct OverlapAnswer;
-struct SharedRows;
-struct SharedPoints;
-struct PartialRows;
-struct GhostValues;
 class RowBook;
 class PieceArray;
-class TargetSide;
 
 class AnyPiece {
  public:
@@ -81,42 +71,24 @@ class AnyPiece {
   [[nodiscard]] const OutsidePolicy& policy(CouplingId id) const;
 
   // Entry methods of a search. All names begin with m2m_, since the user's class inherits them.
-  void m2m_submit_source(const CouplingSetup& setup);
-  void m2m_submit_target(const CouplingSetup& setup);
+  // `side`: source_model or target_model.
+  void m2m_submit(const CouplingSetup& setup, collide::ModelId side);
   void m2m_hits(CouplingId id, const collide::Hits& hits);
   void m2m_ask(CouplingId id);
-  void m2m_answer(DonorQuery query);
-  void m2m_answer_all(CouplingId id);
-  void m2m_receive_donors(const DonorAnswer& answer);
-  void m2m_name_source(CouplingId id);
-  void m2m_ask_nearest(CouplingId id, const std::vector<SourcePiece>& sources);
-  void m2m_answer_nearest(NearestQuery query);
-  void m2m_receive_nearest(const NearestAnswer& answer);
+  void m2m_query(SearchQuery query);
+  void m2m_answer(CouplingId id);
+  void m2m_receive(SearchAnswer answer);
+  void m2m_name(CouplingId id);
+  void m2m_receive_names(CouplingId id, const std::vector<SourcePiece>& sources);
   void m2m_choose(Choice choice);
-  void m2m_attach_if_alone(CouplingId id, collide::OwnerId source);
-  void m2m_attach(CouplingId id, collide::OwnerId target);
-
-  // Of a conservative search.
-  void m2m_submit_overlap_source(const CouplingSetup& setup);
-  void m2m_submit_overlap_target(const CouplingSetup& setup);
-  void m2m_share_points(CouplingId id, const SharedPoints& shared);
-  void m2m_ask_overlaps(CouplingId id);
-  void m2m_answer_overlaps(const OverlapQuery& query);
-  void m2m_receive_overlaps(const OverlapAnswer& answer);
-  void m2m_share_rows(CouplingId id);
-  void m2m_part(const SharedRows& shared);
-  void m2m_receive_rows(PartialRows partial);
-  void m2m_finish_search(CouplingId id);
-  void m2m_greet(CouplingId id, collide::OwnerId neighbour);
 
   // Of an application. The k-th call of every source piece belongs to the k-th round; a target
   // piece gets a round when it is complete. A piece without sources has nothing to wait for: an
   // application by the handle reaches it directly, and a round of pieces through the one source
   // piece that it is attached to.
   void m2m_give_values(CouplingId id, detail::Giver give, detail::Taker take);
-  void m2m_take_if_alone(CouplingId id, detail::Taker take);
   void m2m_take(GivenValues given);
-  void m2m_take_ghosts(GhostValues ghosts);
+  void m2m_take_if_alone(CouplingId id, detail::Taker take);
 
   // Of weights (coupling_weights.hpp): they go to the pieces of the target.
   void m2m_give_rows(CouplingId id, GroupProxy<RowBook> book);
@@ -136,15 +108,9 @@ class AnyPiece {
   /// New values were written.
   virtual void m2m_received(CouplingId id) = 0;
 
-  [[nodiscard]] CouplingSides& m2m_sides() const { return *couplings.sides_; }
   /// Sends a message that says from which piece it is.
   template <auto F, class Message>
   void m2m_send(const PieceArray& pieces, collide::OwnerId to, Message message);
-  /// Goes on with a search once all answers are there.
-  void m2m_ask_on(TargetSide& to);
-  void m2m_give_loads(CouplingId id, std::span<const double> values, detail::Taker take);
-  /// Goes on with a projection as far as its messages allow.
-  void m2m_project(CouplingId id, detail::Taker take);
 };
 
 }  // namespace tess::m2m

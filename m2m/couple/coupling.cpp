@@ -82,7 +82,7 @@ const Callback<collide::Hits>::Kind hits_kind{naming::name_of<&send_hits>(), &se
 
 void send_shared_points(const Callback<SharedPoints>& callback, SharedPoints&& shared) {
   const auto [target, coupling] = from_bytes<std::tuple<PieceArray, CouplingId>>(callback.where());
-  target.send<&AnyPiece::m2m_share_points>(shared.piece, coupling, std::move(shared));
+  target.send<&AnyPiece::m2m_receive>(shared.piece, SearchAnswer{coupling, {}, std::move(shared)});
 }
 const Callback<SharedPoints>::Kind shared_points_kind{naming::name_of<&send_shared_points>(),
                                                       &send_shared_points};
@@ -96,11 +96,6 @@ struct AnyCoupling::State {
   UnderWay under_way{};
   std::shared_ptr<Turns> turns{};  ///< since the first search
 
-  [[nodiscard]] bool is_conservative() const { return m2m::is_conservative(options.kind); }
-  /// The pieces of the target exchange values of ghosts.
-  [[nodiscard]] bool has_directory() const {
-    return is_conservative() && options.target_values == Centring::nodes;
-  }
   void enter(const char* phase) const {
     if (options.on_phase != nullptr) (*options.on_phase)(phase);
   }
@@ -131,7 +126,7 @@ struct AnyCoupling::State {
     setup.collider = collide::make_collider(
         {.voxel_size = options.voxel_size, .rules = {.within_model = collide::WithinModel::skip}});
     setup.ledger = create<Ledger>(each_pe);
-    if (has_directory()) setup.directory = create<PointDirectory>(each_pe);
+    if (setup.has_projection()) setup.directory = create<PointDirectory>(each_pe);
     // Each coupling has its own collider.
     setup.id = CouplingId{setup.collider.voxels.id().value};
     turns = std::make_shared<Turns>();
@@ -181,7 +176,7 @@ void AnyCoupling::destroy() {
   setup.target.broadcast<&AnyPiece::m2m_release>(setup.id);
   setup.collider.destroy();
   setup.ledger.destroy();
-  if (state_->has_directory()) setup.directory.destroy();
+  if (setup.has_projection()) setup.directory.destroy();
   setup = {};
 }
 
@@ -197,19 +192,7 @@ TaskOf<SearchSummary> AnyCoupling::search() {
   co_await collide_covers();
   const Time broad = now();
   state.enter("narrow");
-  LedgerPage found;
-  if (state.is_conservative()) {
-    co_await find_overlaps();
-    found = co_await state.setup.ledger.reduce<&Ledger::close_page>();
-  } else {
-    found = co_await find_donors();
-  }
-  // Source pieces of conservative kinds have entered their names; otherwise they were named, since
-  // such target pieces were found.
-  if (found.n_alone > 0 && found.least_source)
-    co_await epoch([&, source = *found.least_source] {
-      state.setup.target.broadcast<&AnyPiece::m2m_attach_if_alone>(state.setup.id, source);
-    });
+  const LedgerPage found = co_await find_sources();
   co_return SearchSummary{seconds(broad - start), seconds(now() - broad), found.tally, found.worst};
 }
 
@@ -218,18 +201,11 @@ Task AnyCoupling::collide_covers() {
   const CouplingSetup& setup = state.setup;
   const bool is_new = setup.id == CouplingId{};
   if (is_new) check(state.options);
-  // The pieces of conservative kinds call the directory, which must be known on their PEs.
-  if (is_new && state.is_conservative()) co_await epoch([&] { state.set_up(); });
   co_await epoch([&] {
-    if (is_new && !state.is_conservative()) state.set_up();
+    if (is_new) state.set_up();
     setup.ledger.broadcast<&Ledger::keep_pieces>(setup.source.id());
-    if (state.is_conservative()) {
-      setup.source.broadcast<&AnyPiece::m2m_submit_overlap_source>(setup);
-      setup.target.broadcast<&AnyPiece::m2m_submit_overlap_target>(setup);
-    } else {
-      setup.source.broadcast<&AnyPiece::m2m_submit_source>(setup);
-      setup.target.broadcast<&AnyPiece::m2m_submit_target>(setup);
-    }
+    setup.source.broadcast<&AnyPiece::m2m_submit>(setup, source_model);
+    setup.target.broadcast<&AnyPiece::m2m_submit>(setup, target_model);
   });
   co_await setup.collider.run(
       {Callback<collide::Hits>(detail::hits_kind, state.target_bytes()), target_model});
@@ -237,36 +213,28 @@ Task AnyCoupling::collide_covers() {
 
 /// Only points that are in no tetrahedron need to know all source pieces, and pieces without
 /// sources one of them.
-TaskOf<LedgerPage> AnyCoupling::find_donors() {
+TaskOf<LedgerPage> AnyCoupling::find_sources() {
   const CouplingSetup& setup = state_->setup;
-  co_await epoch([&] { setup.target.broadcast<&AnyPiece::m2m_ask>(setup.id); });
-  LedgerPage found = co_await setup.ledger.reduce<&Ledger::close_page>();
-  if (found.n_waiting == 0 && found.n_alone == 0) co_return found;
-  co_await epoch([&] { setup.source.broadcast<&AnyPiece::m2m_name_source>(setup.id); });
-  LedgerPage page = co_await setup.ledger.reduce<&Ledger::close_page>();
-  std::sort(page.sources.begin(), page.sources.end(),
-            [](const SourcePiece& a, const SourcePiece& b) { return a.owner < b.owner; });
-  if (!page.sources.empty()) found.least_source = page.sources.front().owner;
-  if (found.n_waiting == 0) co_return found;
-  co_await epoch(
-      [&] { setup.target.broadcast<&AnyPiece::m2m_ask_nearest>(setup.id, page.sources); });
-  page = co_await setup.ledger.reduce<&Ledger::close_page>();
-  found += page;
-  co_return found;
-}
-
-/// Each step needs all messages of the one before.
-Task AnyCoupling::find_overlaps() {
-  const CouplingSetup& setup = state_->setup;
-  if (state_->has_directory()) {
+  if (setup.has_projection()) {
     co_await epoch([&] {
       setup.directory.broadcast<&PointDirectory::resolve>(
           Callback<SharedPoints>(detail::shared_points_kind, state_->target_bytes()));
     });
   }
-  co_await epoch([&] { setup.target.broadcast<&AnyPiece::m2m_ask_overlaps>(setup.id); });
-  co_await epoch([&] { setup.target.broadcast<&AnyPiece::m2m_share_rows>(setup.id); });
-  co_await epoch([&] { setup.target.broadcast<&AnyPiece::m2m_finish_search>(setup.id); });
+  co_await epoch([&] { setup.target.broadcast<&AnyPiece::m2m_ask>(setup.id); });
+  LedgerPage found = co_await setup.ledger.reduce<&Ledger::close_page>();
+  if (found.n_waiting == 0 && found.n_alone == 0) co_return found;
+  co_await epoch([&] { setup.source.broadcast<&AnyPiece::m2m_name>(setup.id); });
+  LedgerPage page = co_await setup.ledger.reduce<&Ledger::close_page>();
+  std::sort(page.sources.begin(), page.sources.end(),
+            [](const SourcePiece& a, const SourcePiece& b) { return a.owner < b.owner; });
+  if (found.n_waiting == 0 && page.sources.size() > 1) page.sources.resize(1);
+  co_await epoch(
+      [&] { setup.target.broadcast<&AnyPiece::m2m_receive_names>(setup.id, page.sources); });
+  if (found.n_waiting == 0) co_return found;
+  page = co_await setup.ledger.reduce<&Ledger::close_page>();
+  found += page;
+  co_return found;
 }
 
 Task AnyCoupling::apply(detail::Giver give, detail::Taker take,

@@ -1,18 +1,26 @@
 #include "m2m/couple/couplings.hpp"
 
-#include "m2m/couple/coupling_sides.hpp"
+#include "m2m/couple/source_side.hpp"
+#include "m2m/couple/target_side.hpp"
 #include "runtime/core/check.hpp"
+
+#include <map>
 
 namespace tess::m2m {
 
-Couplings::Couplings() : sides_(std::make_unique<CouplingSides>()) {}
+struct Couplings::Sides {
+  std::map<CouplingId, SourceSide> sources{};
+  std::map<CouplingId, TargetSide> targets{};
+};
+
+Couplings::Couplings() : sides_(std::make_unique<Sides>()) {}
 Couplings::Couplings(Couplings&&) noexcept = default;
 Couplings& Couplings::operator=(Couplings&&) noexcept = default;
 Couplings::~Couplings() = default;
 
 template <class Ar>
 void Couplings::serialize(Ar& ar) {
-  ar(*sides_);
+  ar(sides_->sources, sides_->targets);
 }
 template void Couplings::serialize(Reader&);
 template void Couplings::serialize(Writer&);
@@ -30,25 +38,22 @@ auto& side_of(Sides& sides, CouplingId id, const char* side) {
 
 }  // namespace
 
-SourceSide& CouplingSides::source(CouplingId id) {
-  return side_of(sources, id, "source");
+SourceSide& Couplings::source(CouplingId id) const {
+  return side_of(sides_->sources, id, "source");
 }
-TargetSide& CouplingSides::target(CouplingId id) {
-  return side_of(targets, id, "target");
+TargetSide& Couplings::target(CouplingId id) const {
+  return side_of(sides_->targets, id, "target");
 }
-OverlapSource& CouplingSides::overlap_source(CouplingId id) {
-  return side_of(overlap_sources, id, "source");
+SourceSide& Couplings::add_source(CouplingId id) {
+  return sides_->sources[id];
 }
-OverlapTarget& CouplingSides::overlap_target(CouplingId id) {
-  return side_of(overlap_targets, id, "target");
+TargetSide& Couplings::add_target(CouplingId id) {
+  return sides_->targets[id];
 }
 
-void CouplingSides::release(CouplingId id) {
-  sources.erase(id);
-  targets.erase(id);
-  overlap_sources.erase(id);
-  overlap_targets.erase(id);
-  attached.erase(id);
+void Couplings::release(CouplingId id) {
+  sides_->sources.erase(id);
+  sides_->targets.erase(id);
 }
 
 }  // namespace tess::m2m

@@ -7,9 +7,10 @@
 
 namespace tess::m2m {
 
-struct CouplingSides;
+class SourceSide;
+class TargetSide;
 
-/// The couplings of a piece. It migrates with the piece.
+/// What a piece knows of its couplings: a side per coupling and role. It migrates with the piece.
 class Couplings {
  public:
   Couplings();
@@ -22,8 +23,17 @@ class Couplings {
 
  private:
   friend class AnyPiece;
+  struct Sides;
 
-  std::unique_ptr<CouplingSides> sides_;
+  // They end the job if this piece has no such side.
+  [[nodiscard]] SourceSide& source(CouplingId id) const;
+  [[nodiscard]] TargetSide& target(CouplingId id) const;
+  // They make it if there is none.
+  [[nodiscard]] SourceSide& add_source(CouplingId id);
+  [[nodiscard]] TargetSide& add_target(CouplingId id);
+  void release(CouplingId id);
+
+  std::unique_ptr<Sides> sides_;
 };
 
 }  // namespace tess::m2m

@@ -10,7 +10,6 @@
 #include "runtime/runtime.hpp"
 
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -31,7 +30,6 @@ struct LedgerPage {
   std::uint64_t n_waiting = 0;  ///< target pieces with points that need the nearest vertex
   std::vector<SourcePiece> sources;
   std::uint64_t n_alone = 0;  ///< target pieces that no source piece gives values
-  std::optional<collide::OwnerId> least_source;  ///< of all source pieces
 
   LedgerPage& operator+=(const LedgerPage& other) {
     tally += other.tally;
@@ -39,11 +37,7 @@ struct LedgerPage {
     n_waiting += other.n_waiting;
     sources.insert(sources.end(), other.sources.begin(), other.sources.end());
     n_alone += other.n_alone;
-    if (other.least_source) take_source(*other.least_source);
     return *this;
-  }
-  void take_source(collide::OwnerId owner) {
-    if (!least_source || owner < *least_source) least_source = owner;
   }
 };
 /// Joins the pages of all PEs.
@@ -62,7 +56,6 @@ class Ledger : public Group<Ledger> {
   void add(const SourcePiece& source) { page_.sources.push_back(source); }
   void add_waiting() { ++page_.n_waiting; }
   void add_alone() { ++page_.n_alone; }
-  void add_source(collide::OwnerId owner) { page_.take_source(owner); }
 
   /// Entry method: a search uses the source pieces that are there now.
   void keep_pieces(CollectionId source) { n_destroyed_ = destroyed_here(source).first; }

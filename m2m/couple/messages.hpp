@@ -1,5 +1,9 @@
-// The messages between pieces of coupled meshes. A piece can be part of several couplings at once,
-// so each message names its coupling. A piece is named by the owner id of its index.
+// The messages between pieces of coupled meshes, in the order of the table in any_piece.hpp. A
+// piece can be part of several couplings at once, so each message names its coupling. A piece is
+// named by the owner id of its index.
+//
+// A place is what gets a value in the target: a point that a piece owns, or a cell. An unknown is
+// what has a value in the source: a point, a tetrahedron or a corner of one.
 #pragma once
 
 #include "collide/collider.hpp"
@@ -7,12 +11,15 @@
 #include "m2m/couple/piece_array.hpp"
 #include "m2m/couple/point_directory.hpp"
 #include "m2m/policy.hpp"
+#include "m2m/rows/conservative/overlap_rows.hpp"
 #include "m2m/rows/interpolate/donor.hpp"
 #include "m2m/transfer_kind.hpp"
 #include "runtime/runtime.hpp"
 
+#include <array>
 #include <cstdint>
 #include <utility>
+#include <variant>
 #include <vector>
 
 namespace tess::m2m {
@@ -33,61 +40,93 @@ struct CouplingSetup {
   bool clamp = false;
   Centring source_values{}, target_values{};
   GroupProxy<PointDirectory> directory;  ///< only where target pieces exchange values of ghosts
+
+  [[nodiscard]] bool is_conservative() const { return m2m::is_conservative(kind); }
+  /// The values of points are the solution of a system of equations over all target pieces.
+  [[nodiscard]] bool has_projection() const {
+    return is_conservative() && target_values == Centring::nodes;
+  }
 };
 
 /// Messages, each with the piece that it goes to.
 template <class Message>
 using Addressed = std::vector<std::pair<collide::OwnerId, Message>>;
 
-/// From a target piece to a source piece: which of your tetrahedra hold these points?
+/// Which of your tetrahedra hold these points?
 struct DonorQuery {
-  CouplingId coupling{};
-  collide::OwnerId from{};
   std::vector<std::uint32_t> boxes;  ///< of the source piece's cover, where there are points
   std::vector<Point> points;
 };
-/// The reply: the best candidate of the source piece per point that it holds.
-struct DonorAnswer {
-  CouplingId coupling{};
-  collide::OwnerId from{};
-  std::vector<std::uint32_t> points;  ///< indices into the points of the query
-  std::vector<Candidate> candidates;
-};
-
-/// From a target piece to a source piece: which of your vertices are nearest to these points?
+/// Which of your vertices are nearest to these points?
 struct NearestQuery {
-  CouplingId coupling{};
-  collide::OwnerId from{};
   std::vector<std::uint32_t> keys;  ///< per point, from the target piece: they come back
   std::vector<Point> points;
   std::vector<double> squared_reaches;  ///< per point: farther vertices are not of interest
 };
-/// The reply: the nearest vertex per point; -1 if none is within reach.
-struct NearestAnswer {
+/// From a target piece to a source piece. TargetTets: which of your tetrahedra overlap these?
+struct SearchQuery {
   CouplingId coupling{};
   collide::OwnerId from{};
+  std::variant<DonorQuery, NearestQuery, TargetTets> what;
+};
+
+/// The best candidate of the source piece per point that it holds.
+struct DonorAnswer {
+  std::vector<std::uint32_t> points;  ///< indices into the points of the query
+  std::vector<Candidate> candidates;
+};
+/// The nearest vertex per point; -1 if none is within reach.
+struct NearestAnswer {
   std::vector<std::uint32_t> keys;  ///< those of the query
   std::vector<double> squared_distances;
   std::vector<GlobalId> ids;
   std::vector<VertexId> vertices;  ///< in the source piece
 };
+/// Which tetrahedra overlap, how much of them, and which unknowns of the query have a row.
+struct OverlapAnswer {
+  std::vector<std::uint32_t> tets;  ///< positions in the query
+  std::vector<std::array<double, 4>> covered;
+  std::vector<std::uint32_t> rows;  ///< positions among the query's unknowns
+};
+/// The reply to the Choice of a conservative search: the source piece's part of the rows that it
+/// does not keep. The target adds the parts of several source pieces and applies these rows itself.
+struct PartialRows {
+  std::vector<GlobalId> ids;            ///< of all unknowns in them, ascending
+  std::vector<std::uint32_t> first{0};  ///< per row, and the end: its first column
+  std::vector<std::uint32_t> columns;   ///< positions in ids, ascending in a row
+  std::vector<double> weights;
+};
+/// From a target piece to those beside it: it takes part in projections.
+struct Greeting {};
+/// To a target piece, in a search. SharedPoints are the directory's reply to its reports.
+struct SearchAnswer {
+  CouplingId coupling{};
+  collide::OwnerId from{};
+  std::variant<DonorAnswer, NearestAnswer, OverlapAnswer, PartialRows, SharedPoints, Greeting> what;
+};
 
-/// The end of a search, from a target piece to a source piece that it asked: what to send from now
-/// on, in this order.
+/// The end of a search, from a target piece to a source piece: what to send from now on, in this
+/// order.
 struct Choice {
   CouplingId coupling{};
   collide::OwnerId from{};
-  std::vector<std::uint32_t> answers;  ///< positions in the source piece's DonorAnswer
-  std::vector<VertexId> vertices;      ///< for points outside
+  std::vector<std::uint32_t> kept;  ///< positions among the points or rows of the answer, ascending
+  std::vector<VertexId> vertices;   ///< for points outside
+  bool is_alone = false;  ///< no values, but word of each round: no source piece gives it values
 };
 
-/// Values for a target piece, in the order of its Choice.
+/// Values for a target piece: per donor in the order of its Choice. With conservative kinds the
+/// loads of the rows that were kept; if the kind is bounded, as many pairs (low, high); then the
+/// values of PartialRows::ids. All have n_components columns.
 struct GivenValues {
   CouplingId coupling{};
   collide::OwnerId from{};
   detail::Taker take;          ///< a member of the target's class; each is a channel
-  std::uint32_t round = 0;     ///< counts the applications of the channel
+  std::uint32_t number = 0;    ///< counts the applications of the channel
   std::vector<double> values;  ///< n_rows × n_components, row-major
+  /// From a piece of the target, within a projection: values of points that the receiver holds as
+  /// ghosts, by ascending id. `number` counts the steps of the channel.
+  bool are_ghosts = false;
 };
 
 }  // namespace tess::m2m

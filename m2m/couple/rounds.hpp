@@ -2,6 +2,8 @@
 // for nothing, so messages of later rounds can arrive before those of the present one.
 #pragma once
 
+#include "m2m/couple/messages.hpp"
+
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -10,17 +12,16 @@
 
 namespace tess::m2m {
 
-template <class Message>
 class Rounds {
  public:
-  void add(std::uint32_t round, Message message) { rounds_[round].push_back(std::move(message)); }
+  void add(GivenValues message) { rounds_[message.number].push_back(std::move(message)); }
   /// True if `n` messages of the next round are here.
   [[nodiscard]] bool has_next(std::size_t n) const {
     const auto at = rounds_.find(next_);
     return at != rounds_.end() && at->second.size() >= n;
   }
   /// The messages of the next round, which then ends.
-  [[nodiscard]] std::vector<Message> take() {
+  [[nodiscard]] std::vector<GivenValues> take() {
     auto node = rounds_.extract(next_++);
     return std::move(node.mapped());
   }
@@ -32,7 +33,7 @@ class Rounds {
 
  private:
   std::uint32_t next_ = 0;
-  std::map<std::uint32_t, std::vector<Message>> rounds_;
+  std::map<std::uint32_t, std::vector<GivenValues>> rounds_;
 };
 
 }  // namespace tess::m2m

@@ -1,64 +1,19 @@
 #include "m2m/couple/source_side.hpp"
 
-#include "m2m/rows/reconstruct/gradients.hpp"
-#include "m2m/rows/reconstruct/second_order.hpp"
-#include "m2m/rows/search/best_donors.hpp"
-#include "runtime/core/sort_unique.hpp"
+#include "runtime/core/check.hpp"
 
-#include <algorithm>
 #include <utility>
 
 namespace tess::m2m {
-namespace {
-
-bool needs_gradients(TransferKind kind) {
-  return kind == TransferKind::second_order || kind == TransferKind::limited;
-}
-
-std::vector<std::int32_t> points_of_nearest(const MeshView& mesh) {
-  std::vector<std::uint8_t> counts(mesh.points.size(), mesh.tets.empty() ? 1 : 0);
-  for (const Tet& tet : mesh.tets)
-    for (const VertexId v : tet) counts[static_cast<std::size_t>(v)] = 1;
-  std::vector<std::int32_t> points;
-  for (std::int32_t v = 0; v < mesh.n_owned; ++v)
-    if (counts[static_cast<std::size_t>(v)] != 0) points.push_back(v);
-  return points;
-}
-
-/// The value, or the least or greatest of a vertex of the donor if it is beyond. NaN stays NaN.
-double clamped(double value, const Donor& donor, const double* values, std::size_t stride) {
-  double low = values[static_cast<std::size_t>(donor.vertices[0]) * stride], high = low;
-  for (const VertexId v : donor.vertices) {
-    const double at = values[static_cast<std::size_t>(v) * stride];
-    low = at < low ? at : low;
-    high = at > high ? at : high;
-  }
-  return value < low ? low : value > high ? high : value;
-}
-
-/// The same place for a field in tetrahedra: rows of values in place of vertices.
-Donor in_tet(std::int32_t tet, const Weights& weights, Centring centring) {
-  if (centring == Centring::cells) return donor_at(tet);
-  return {{4 * tet, 4 * tet + 1, 4 * tet + 2, 4 * tet + 3}, weights};
-}
-
-}  // namespace
-
-Aabb box_of_nearest(const MeshView& mesh) {
-  Aabb box = collide::no_box<double, 3>();
-  for (const std::int32_t v : points_of_nearest(mesh))
-    grow(box, mesh.points[static_cast<std::size_t>(v)]);
-  return box;
-}
 
 std::vector<Aabb> SourceSide::start_search(const MeshView& mesh) {
   validate(mesh);
   queries_.clear();
-  drafts_.clear();
-  donors_.clear();
+  given_.clear();
+  attached_.clear();
   rounds_.clear();
   gradient_vertices_.clear();
-  rows_of_search_.set(mesh, setup.source_values);
+  n_rows_ = n_unknowns(mesh, setup.source_values);
   stays_ = same_.ask(mesh);
   if (stays_ == SameMesh::Answer::same) return cover_.boxes;
   nearest_.reset();
@@ -66,113 +21,83 @@ std::vector<Aabb> SourceSide::start_search(const MeshView& mesh) {
   return cover_.boxes;
 }
 
-bool SourceSide::add(DonorQuery query) {
+bool SourceSide::add(SearchQuery query) {
   queries_.push_back(std::move(query));
   return queries_.size() == 1;
 }
 
-Addressed<DonorAnswer> SourceSide::answers(const MeshView& mesh, std::uint64_t& n_tested) {
-  const std::vector<DonorQuery> queries = std::exchange(queries_, {});
+Addressed<SearchAnswer> SourceSide::answers(const MeshView& mesh, std::uint64_t& n_tested) {
+  std::vector<SearchQuery> queries = std::exchange(queries_, {});
   std::vector<std::uint32_t> boxes;
   std::vector<std::span<const Point>> lists;
-  for (const DonorQuery& query : queries) {
-    boxes.insert(boxes.end(), query.boxes.begin(), query.boxes.end());
-    lists.emplace_back(query.points);
-  }
+  for (const SearchQuery& query : queries)
+    if (const auto* of_points = std::get_if<DonorQuery>(&query.what)) {
+      boxes.insert(boxes.end(), of_points->boxes.begin(), of_points->boxes.end());
+      lists.emplace_back(of_points->points);
+    }
   sort_unique_boxes(boxes);
-  std::vector<BestDonors> found =
-      best_donors(mesh, cover_, boxes, lists, setup.tolerance, n_tested);
-  Addressed<DonorAnswer> out;
-  for (std::size_t q = 0; q < queries.size(); ++q) {
-    BestDonors& best = found[q];
-    if (setup.source_values != Centring::nodes)
-      for (std::size_t i = 0; i < best.donors.size(); ++i)
-        best.donors[i] = in_tet(best.tets[i], best.donors[i].weights, setup.source_values);
-    drafts_[queries[q].from] = std::move(best.donors);
-    out.emplace_back(queries[q].from,
-                     DonorAnswer{setup.id, {}, std::move(best.points), std::move(best.candidates)});
+  std::vector<BestDonors> located;
+  if (!lists.empty()) located = best_donors(mesh, cover_, boxes, lists, setup.tolerance, n_tested);
+  Addressed<SearchAnswer> out;
+  auto next = located.begin();
+  for (SearchQuery& query : queries) {
+    out.emplace_back(query.from, SearchAnswer{setup.id, {}, {}});
+    auto& what = out.back().second.what;
+    if (const auto* tets = std::get_if<TargetTets>(&query.what))
+      what = answer_overlaps(mesh, query.from, *tets, n_tested);
+    else if (auto* of_nearest = std::get_if<NearestQuery>(&query.what))
+      what = answer_nearest(mesh, std::move(*of_nearest));
+    else
+      what = answer_points(query.from, std::move(*next++));
   }
   return out;
 }
 
-NearestAnswer SourceSide::answer(const MeshView& mesh, NearestQuery query) {
-  if (!nearest_)
-    nearest_.emplace(mesh.owned(), mesh.point_ids.first(mesh.owned().size()),
-                     points_of_nearest(mesh));
-  NearestAnswer answer{setup.id, {}, std::move(query.keys), {}, {}, {}};
-  for (std::size_t i = 0; i < answer.keys.size(); ++i) {
-    const NearestVertex::Answer found = nearest_->find(query.points[i], query.squared_reaches[i]);
-    answer.squared_distances.push_back(found.squared_distance);
-    answer.vertices.push_back(found.vertex);
-    answer.ids.push_back(found.vertex < 0 ? -1
-                                          : mesh.point_ids[static_cast<std::size_t>(found.vertex)]);
-  }
-  return answer;
+Addressed<SearchAnswer> SourceSide::choose(const MeshView& mesh, Choice choice) {
+  Addressed<SearchAnswer> out;
+  if (choice.is_alone)
+    attached_.push_back(choice.from);
+  else if (setup.is_conservative())
+    out.emplace_back(choice.from, SearchAnswer{setup.id, {}, choose_rows(mesh, choice)});
+  else
+    choose_donors(choice);
+  return out;
 }
 
-void SourceSide::choose(Choice choice) {
-  std::vector<Donor> drafts = std::exchange(drafts_[choice.from], {});
-  drafts_.erase(choice.from);
-  std::vector<Donor> donors;
-  if (choice.answers.size() == drafts.size()) {
-    donors = std::move(drafts);
-  } else {
-    donors.reserve(choice.answers.size() + choice.vertices.size());
-    for (const std::uint32_t answer : choice.answers) donors.push_back(drafts[answer]);
-  }
-  for (const VertexId vertex : choice.vertices) donors.push_back(donor_at(vertex));
-  if (!donors.empty()) donors_[choice.from] = std::move(donors);
+void SourceSide::check_rows(const MeshView& mesh) const {
+  const std::size_t n = n_unknowns(mesh, setup.source_values);
+  TESS_CHECK(n == n_rows_, "a piece has ", n, " rows of values, and had ", n_rows_,
+             " in the last search of the coupling: search again when points or tetrahedra change");
 }
 
-void SourceSide::prepare(const MeshView& mesh) {
-  if (stays_ == SameMesh::Answer::moved) {
-    cover_ = {};
-    nearest_.reset();
-  }
-  if (!needs_gradients(setup.kind) || !gradient_vertices_.empty()) return;
-  for (const auto& [target, donors] : donors_)
-    for (const Donor& donor : donors)
-      gradient_vertices_.insert(gradient_vertices_.end(), donor.vertices.begin(),
-                                donor.vertices.end());
-  sort_unique(gradient_vertices_);
-  gradient_rows_ = gradient_rows(mesh, mesh.point_ids, gradient_vertices_);
+void SourceSide::give(const MeshView& mesh, std::span<const double> values, detail::Taker take,
+                      const std::function<void(collide::OwnerId, GivenValues)>& send) {
+  const std::size_t n_rows = n_unknowns(mesh, setup.source_values);
+  TESS_CHECK(n_rows == 0 || (!values.empty() && values.size() % n_rows == 0), "a piece with ",
+             n_rows, " ", rows_of(setup.source_values), " gives ", values.size(),
+             " values: give as many rows, ghosts included");
+  check_rows(mesh);
+  if (n_rows == 0) return;
+  prepare(mesh);
+  const std::size_t n_components = values.size() / n_rows;
+  const std::vector<Point> slopes = gradients(values, n_components);
+  const std::uint32_t round = rounds_[take->channel]++;
+  for (const auto& [target, given] : given_)
+    send(target, GivenValues{setup.id,
+                             {},
+                             take,
+                             round,
+                             setup.is_conservative()
+                                 ? loads(given, values, n_components)
+                                 : interpolate(mesh, given.donors, values, slopes, n_components)});
 }
 
-std::vector<Point> SourceSide::gradients(std::span<const double> values,
-                                         std::size_t n_components) const {
-  if (!needs_gradients(setup.kind)) return {};
-  std::vector<Point> mine(gradient_vertices_.size() * n_components), all(values.size());
-  m2m::apply(gradient_rows_, values, n_components, std::span(mine));
-  for (std::size_t i = 0; i < gradient_vertices_.size(); ++i)
-    std::copy_n(mine.data() + i * n_components, n_components,
-                all.data() + static_cast<std::size_t>(gradient_vertices_[i]) * n_components);
-  return all;
-}
-
-std::vector<double> SourceSide::interpolate(const MeshView& mesh, std::span<const Donor> donors,
-                                            std::span<const double> values,
-                                            std::span<const Point> gradients,
-                                            std::size_t n_components) const {
-  std::vector<double> out(donors.size() * n_components);
-  if (needs_gradients(setup.kind)) {
-    std::vector<Tet> tets;
-    std::vector<PointInTet> points;
-    for (const Donor& donor : donors) {
-      points.push_back({static_cast<std::int32_t>(tets.size()), donor.weights});
-      tets.push_back(donor.vertices);
-    }
-    const Limit limit = setup.kind == TransferKind::limited ? Limit::tetrahedron : Limit::none;
-    second_order_values({mesh.points, tets}, points, values, gradients, n_components, limit, {},
-                        out);
-    return out;
-  }
-  double* to = out.data();
-  for (const Donor& donor : donors)
-    for (std::size_t c = 0; c < n_components; ++c) {
-      const double* const from = values.data() + c;
-      const double value = interpolated(donor.weights, donor.vertices, from, n_components);
-      *to++ = setup.clamp ? clamped(value, donor, from, n_components) : value;
-    }
+Addressed<Rows<double>> SourceSide::donor_rows(const MeshView& mesh) {
+  check_rows(mesh);
+  prepare(mesh);
+  Addressed<Rows<double>> out;
+  for (const auto& [target, given] : given_)
+    out.emplace_back(target, weights_of(mesh, given.donors));
   return out;
 }
 

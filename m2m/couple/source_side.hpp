@@ -1,18 +1,18 @@
 // What a piece knows of a coupling that it gives values to. During a search: the cover of its
-// tetrahedra, and the donors it found for each target piece that asked. After it: the donors that
-// were chosen.
+// tetrahedra, and what it found for each target piece that asked. After it: what was chosen of
+// that, donors (source_donors.cpp) or rows of loads (source_overlaps.cpp).
 #pragma once
 
 #include "m2m/couple/messages.hpp"
-#include "m2m/couple/rows_of_search.hpp"
 #include "m2m/mesh_view.hpp"
-#include "m2m/rows/conservative/overlap_rows.hpp"
+#include "m2m/rows/search/best_donors.hpp"
 #include "m2m/rows/search/cover.hpp"
 #include "m2m/rows/search/nearest_vertex.hpp"
 #include "m2m/rows/search/same_mesh.hpp"
 #include "m2m/rows/weights/rows.hpp"
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <span>
@@ -32,51 +32,56 @@ class SourceSide {
   /// Forgets the last search, and returns the boxes of the cover. Where the mesh has stayed as it
   /// was, the cover and what finds nearest vertices are kept.
   [[nodiscard]] std::vector<Aabb> start_search(const MeshView& mesh);
-  /// Keeps a query. Returns true if no other waits for answers().
-  [[nodiscard]] bool add(DonorQuery query);
-  /// The answers to all queries that wait: their points are located in one pass over the
-  /// tetrahedra near to them. Returns in `n_tested` how many pairs of a tetrahedron and a point in
-  /// its box were looked at.
-  [[nodiscard]] Addressed<DonorAnswer> answers(const MeshView& mesh, std::uint64_t& n_tested);
-  [[nodiscard]] NearestAnswer answer(const MeshView& mesh, NearestQuery query);
-  void choose(Choice choice);
   [[nodiscard]] bool has_kept_cover() const { return stays_ == SameMesh::Answer::same; }
+  /// Keeps a query. Returns true if no other waits for answers().
+  [[nodiscard]] bool add(SearchQuery query);
+  /// The answers to all queries that wait: points are located in one pass over the tetrahedra near
+  /// to them. Adds to `n_tested` how many pairs of a tetrahedron and a point in its box, or of
+  /// tetrahedra whose boxes overlap, were looked at.
+  [[nodiscard]] Addressed<SearchAnswer> answers(const MeshView& mesh, std::uint64_t& n_tested);
+  /// Ends the search with a target piece. Returns the answer that it waits for, if it does.
+  [[nodiscard]] Addressed<SearchAnswer> choose(const MeshView& mesh, Choice choice);
+
   /// Calls send(target piece, values) for every target piece that gets values from this one.
   /// `values`: of all points of the piece, n_points × n_components, row-major; or a row per
   /// tetrahedron or corner, as the coupling's source_values say.
-  template <class Send>
   void give(const MeshView& mesh, std::span<const double> values, detail::Taker take,
-            const Send& send) {
-    const std::size_t n_rows = n_unknowns(mesh, setup.source_values);
-    rows_of_search_.check(n_rows);
-    if (n_rows == 0) return;
-    prepare(mesh);
-    const std::size_t n_components = values.size() / n_rows;
-    const std::vector<Point> slopes = gradients(values, n_components);
-    const std::uint32_t round = rounds_[take->channel]++;
-    for (const auto& [target, donors] : donors_)
-      send(target,
-           GivenValues{
-               setup.id, {}, take, round, interpolate(mesh, donors, values, slopes, n_components)});
-  }
-
-  /// Calls send(target piece, rows) for every target piece that gets values from this one. The rows
-  /// are over the points of the piece, in the order of the values of give().
-  template <class Send>
-  void give_rows(const MeshView& mesh, const Send& send) {
-    rows_of_search_.check(n_unknowns(mesh, setup.source_values));
-    prepare(mesh);
-    for (const auto& [target, donors] : donors_) send(target, rows_of(mesh, donors));
-  }
+            const std::function<void(collide::OwnerId, GivenValues)>& send);
+  /// Target pieces that no source piece gives values: they hear of each round from this one.
+  [[nodiscard]] std::span<const collide::OwnerId> attached() const { return attached_; }
+  /// The weights of the donors of each target piece, over the points of the piece, in the order of
+  /// the values of give().
+  [[nodiscard]] Addressed<Rows<double>> donor_rows(const MeshView& mesh);
 
   template <class Ar>
   void serialize(Ar& ar) {
-    ar(setup, same_, stays_, rows_of_search_, cover_, queries_, drafts_, donors_, rounds_,
+    ar(setup, same_, stays_, n_rows_, cover_, queries_, given_, attached_, rounds_,
        gradient_vertices_, gradient_rows_);
   }
 
  private:
-  /// Frees what only this search needs, and makes what only an application needs.
+  /// What a target piece gets: donors, or with conservative kinds rows. Until the choice: what the
+  /// answer has.
+  struct Given {
+    std::vector<Donor> donors{};
+    Rows<double> rows{};
+    std::vector<VertexId> sent{};  // unknowns whose values are sent, too
+    template <class Ar>
+    void serialize(Ar& ar) {
+      ar(donors, rows, sent);
+    }
+  };
+
+  [[nodiscard]] DonorAnswer answer_points(collide::OwnerId target, BestDonors found);
+  [[nodiscard]] NearestAnswer answer_nearest(const MeshView& mesh, NearestQuery query);
+  [[nodiscard]] OverlapAnswer answer_overlaps(const MeshView& mesh, collide::OwnerId target,
+                                              const TargetTets& tets, std::uint64_t& n_tested);
+  void choose_donors(const Choice& choice);
+  [[nodiscard]] PartialRows choose_rows(const MeshView& mesh, const Choice& choice);
+
+  /// Ends the job if the piece's mesh has changed since the search: donors are positions in it.
+  void check_rows(const MeshView& mesh) const;
+  /// Frees what only the search needs, and makes what only an application needs.
   void prepare(const MeshView& mesh);
   /// n_points × n_components where a donor needs them; empty if the kind needs none.
   [[nodiscard]] std::vector<Point> gradients(std::span<const double> values,
@@ -85,19 +90,20 @@ class SourceSide {
                                                 std::span<const double> values,
                                                 std::span<const Point> gradients,
                                                 std::size_t n_components) const;
-
-  [[nodiscard]] Rows<double> rows_of(const MeshView& mesh, std::span<const Donor> donors) const;
+  [[nodiscard]] std::vector<double> loads(const Given& given, std::span<const double> values,
+                                          std::size_t n_components) const;
+  [[nodiscard]] Rows<double> weights_of(const MeshView& mesh, std::span<const Donor> donors) const;
 
   SameMesh same_;
   SameMesh::Answer stays_ = SameMesh::Answer::moved;  // in the last search
-  RowsOfSearch rows_of_search_;
+  std::uint64_t n_rows_ = 0;                          // of values, in the last search
   Cover cover_;
-  std::vector<DonorQuery> queries_;                        // not answered yet
-  std::map<collide::OwnerId, std::vector<Donor>> drafts_;  // per target piece, as answered
-  std::map<collide::OwnerId, std::vector<Donor>> donors_;  // per target piece, as chosen
-  std::map<std::uint64_t, std::uint32_t> rounds_;          // per channel
-  std::vector<VertexId> gradient_vertices_;                // the vertices of all donors
-  Rows<Point> gradient_rows_;                              // a row for each
+  std::vector<SearchQuery> queries_;         // not answered yet
+  std::map<collide::OwnerId, Given> given_;  // per target piece
+  std::vector<collide::OwnerId> attached_;
+  std::map<std::uint64_t, std::uint32_t> rounds_;  // per channel
+  std::vector<VertexId> gradient_vertices_;        // the vertices of all donors
+  Rows<Point> gradient_rows_;                      // a row for each
   // Of the points owned; built when it is asked for, and again after a migration.
   std::optional<NearestVertex> nearest_;
 };

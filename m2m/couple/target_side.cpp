@@ -9,205 +9,200 @@
 namespace tess::m2m {
 
 std::vector<Aabb> TargetSide::start_search(const MeshView& mesh) {
-  // Its tetrahedra are not looked at.
-  validate(MeshView{mesh.points, {}, mesh.point_ids, {}, mesh.n_owned});
-  const auto n_owned = static_cast<std::size_t>(mesh.n_owned);
-  asked_.clear();
-  nearest_.clear();
-  to_ask_.clear();
-  sources_.clear();
-  rows_.clear();
+  n_open_ = 0;
+  found_ = {};
+  least_source_.reset();
+  neighbours_.clear();
   channels_.clear();
-  tally_ = {};
-  worst_ = {};
-  best_.assign(n_owned, {});
-  status_.assign(n_owned, Status::outside);
-  distance_.assign(n_owned, 0);
-  cover_ = cover_points(mesh.owned());
-  return std::exchange(cover_.boxes, {});
+  if (!setup.is_conservative()) return search_.emplace<PointSearch>().start(mesh);
+  return search_.emplace<OverlapSearch>(setup.target_values).start(mesh);
+}
+
+std::vector<PointReport> TargetSide::point_reports(const MeshView& mesh,
+                                                   collide::OwnerId me) const {
+  return std::get<OverlapSearch>(search_).point_reports(mesh, me);
 }
 
 void TargetSide::add(const collide::Hits& hits) {
-  Asked& asked = asked_[hits.other];
-  for (const collide::LocalPair& pair : hits.pairs) {
-    asked.boxes.push_back(static_cast<std::uint32_t>(pair.mine));
-    asked.source_boxes.push_back(static_cast<std::uint32_t>(pair.theirs));
-  }
+  if (auto* points = std::get_if<PointSearch>(&search_))
+    points->add(hits);
+  else
+    std::get<OverlapSearch>(search_).add(hits);
 }
 
-Addressed<DonorQuery> TargetSide::donor_queries(const MeshView& mesh) {
-  Addressed<DonorQuery> out;
-  for (auto& [source, asked] : asked_) {
-    sort_unique_boxes(asked.boxes);
-    sort_unique_boxes(asked.source_boxes);
-    DonorQuery query{setup.id, {}, std::exchange(asked.source_boxes, {}), {}};
-    for (const std::uint32_t box : asked.boxes)
-      for (const std::uint32_t row : cover_.members_of(box)) {
-        asked.rows.push_back(static_cast<std::int32_t>(row));
-        query.points.push_back(mesh.points[row]);
-      }
-    asked.boxes = {};
-    out.emplace_back(source, std::move(query));
-  }
-  n_open_ = out.size();
-  cover_ = {};
-  return out;
-}
-
-void TargetSide::add(const DonorAnswer& answer) {
-  Asked& asked = asked_.at(answer.from);
-  asked.held.reserve(answer.points.size());
-  for (std::size_t i = 0; i < answer.points.size(); ++i) {
-    const std::int32_t row = asked.rows[answer.points[i]];
-    asked.held.push_back(row);
-    Best& best = best_[static_cast<std::size_t>(row)];
-    const Candidate& mine = answer.candidates[i];
-    if (mine.tet == best.candidate.tet && mine.status != Status::outside)
-      fail(ErrorCode::bad_mesh, "coupling ", static_cast<std::uint64_t>(setup.id),
-           ": the source pieces ", collide::owner_text(best.source), " and ",
-           collide::owner_text(answer.from), " have tetrahedra of the same id ", mine.tet,
-           ": tet_ids are unique in the mesh");
-    if (better(mine, best.candidate)) best = {mine, answer.from};
-  }
-  asked.rows = {};
-  --n_open_;
-}
-
-bool TargetSide::needs_sources() {
-  if (!nearest_.empty()) return false;  // they are named
-  for (std::size_t v = 0; v < best_.size(); ++v)
-    if (setup.kind == TransferKind::nearest || best_[v].candidate.status == Status::outside) {
-      to_ask_.push_back(static_cast<std::uint32_t>(nearest_.size()));
-      nearest_.push_back({.row = static_cast<std::int32_t>(v)});
+bool TargetSide::add(SearchAnswer answer) {
+  if (const auto* shared = std::get_if<SharedPoints>(&answer.what)) {
+    for (const SharedPoint& point : shared->points) {
+      Neighbour& neighbour = neighbours_[point.other];
+      (point.is_owner ? neighbour.owned : neighbour.ghosts).emplace_back(point.id, point.point);
+      if (!point.is_owner) std::get<OverlapSearch>(search_).set_volume(point.point, point.volume);
     }
-  return !nearest_.empty();
-}
-
-void TargetSide::name_sources(const MeshView& mesh, std::span<const SourcePiece> sources) {
-  std::vector<Aabb> boxes;
-  // Points of pieces without tetrahedra count if no piece has any.
-  const bool have_tets = std::any_of(sources.begin(), sources.end(),
-                                     [](const SourcePiece& s) { return s.has_tets != 0; });
-  for (const SourcePiece& source : sources) {
-    const bool counts = source.has_tets != 0 || !have_tets;
-    boxes.push_back(counts ? source.box : collide::no_box<double, 3>());
-    sources_.push_back(source.owner);
-  }
-  source_has_points_ = std::any_of(sources.begin(), sources.end(),
-                                   [](const SourcePiece& s) { return s.has_points != 0; });
-  Aabb around = collide::no_box<double, 3>();
-  for (const NearestSoFar& point : nearest_)
-    grow(around, mesh.points[static_cast<std::size_t>(point.row)]);
-  nearest_parts_ = NearestParts(boxes, around);
-}
-
-Addressed<NearestQuery> TargetSide::nearest_queries(const MeshView& mesh) {
-  std::map<collide::OwnerId, NearestQuery> queries;
-  std::erase_if(to_ask_, [&](std::uint32_t key) {
-    NearestSoFar& so_far = nearest_[key];
-    const Point& point = mesh.points[static_cast<std::size_t>(so_far.row)];
-    const NearestParts::RankedPart next = nearest_parts_.next(point, so_far.asked);
-    if (next == NearestParts::none || next.squared_distance > so_far.squared_distance) return true;
-    so_far.asked = next;
-    NearestQuery& query = queries[sources_[static_cast<std::size_t>(next.number)]];
-    query.coupling = setup.id;
-    query.keys.push_back(key);
-    query.points.push_back(point);
-    query.squared_reaches.push_back(so_far.squared_distance);
     return false;
-  });
-  n_open_ = queries.size();
-  return {std::make_move_iterator(queries.begin()), std::make_move_iterator(queries.end())};
-}
-
-void TargetSide::add(const NearestAnswer& answer) {
-  for (std::size_t i = 0; i < answer.keys.size(); ++i) {
-    NearestSoFar& mine = nearest_[answer.keys[i]];
-    const double d = answer.squared_distances[i];
-    if (answer.vertices[i] < 0 || d > mine.squared_distance ||
-        (d == mine.squared_distance && answer.ids[i] >= mine.id))
-      continue;
-    mine.squared_distance = d;
-    mine.id = answer.ids[i];
-    mine.vertex = answer.vertices[i];
-    mine.source = answer.from;
   }
-  --n_open_;
+  if (std::holds_alternative<Greeting>(answer.what)) {
+    neighbours_.at(answer.from).takes_part = true;
+    return false;
+  }
+  if (const auto* points = std::get_if<DonorAnswer>(&answer.what))
+    std::get<PointSearch>(search_).add(setup, answer.from, *points);
+  else if (const auto* nearest = std::get_if<NearestAnswer>(&answer.what))
+    std::get<PointSearch>(search_).add(answer.from, *nearest);
+  else if (const auto* overlaps = std::get_if<OverlapAnswer>(&answer.what))
+    std::get<OverlapSearch>(search_).add(answer.from, *overlaps, found_);
+  else
+    std::get<OverlapSearch>(search_).add(answer.from,
+                                         std::get<PartialRows>(std::move(answer.what)));
+  return --n_open_ == 0;
 }
 
-Addressed<Choice> TargetSide::choices(const MeshView& mesh) {
-  std::map<collide::OwnerId, Choice> all;
-  for (auto& [source, asked] : asked_) {
-    Choice& choice = all[source];
-    if (setup.kind == TransferKind::nearest) continue;
-    std::vector<std::int32_t> mine;
-    for (std::size_t i = 0; i < asked.held.size(); ++i) {
-      if (best_[static_cast<std::size_t>(asked.held[i])].source != source) continue;
-      choice.answers.push_back(static_cast<std::uint32_t>(i));
-      mine.push_back(asked.held[i]);
+bool TargetSide::name_sources(const MeshView& mesh, std::span<const SourcePiece> sources) {
+  if (!sources.empty()) least_source_ = sources.front().owner;
+  auto* const points = std::get_if<PointSearch>(&search_);
+  if (points != nullptr) points->name_sources(mesh, sources);
+  return points != nullptr || n_sources() == 0;
+}
+
+SearchStep TargetSide::next_step(const MeshView& mesh) {
+  SearchStep step;
+  if (auto* points = std::get_if<PointSearch>(&search_)) step = points->next(setup, mesh, found_);
+  if (auto* overlaps = std::get_if<OverlapSearch>(&search_))
+    step = overlaps->next(setup, mesh, found_);
+  if (step.then == SearchStep::Then::answers) n_open_ = step.queries.size() + step.choices.size();
+  if (step.then == SearchStep::Then::nothing) {
+    search_ = {};
+    for (auto& [piece, neighbour] : neighbours_) {
+      std::sort(neighbour.owned.begin(), neighbour.owned.end());
+      std::sort(neighbour.ghosts.begin(), neighbour.ghosts.end());
+      if (n_sources() > 0) step.greetings.push_back(piece);
     }
-    if (!mine.empty()) rows_[source] = std::move(mine);
   }
-  for (std::size_t v = 0; v < best_.size(); ++v) {
-    status_[v] = best_[v].candidate.status;
-    distance_[v] = best_[v].candidate.distance;  // infinite if outside
-    ++tally_.counts[static_cast<std::size_t>(status_[v])];
+  if (std::holds_alternative<std::monostate>(search_) && n_sources() == 0 && least_source_)
+    step.choices.emplace_back(*least_source_, Choice{setup.id, {}, {}, {}, true});
+  return step;
+}
+
+void TargetSide::add(GivenValues given) {
+  // The piece takes no part in a projection without loads.
+  if (given.are_ghosts && n_sources() == 0) return;
+  Channel& channel = channels_[given.take->channel];
+  (given.are_ghosts ? channel.ghosts : channel.given).add(std::move(given));
+}
+
+bool TargetSide::advance(detail::Taker take,
+                         const std::function<void(collide::OwnerId, GivenValues)>& send) {
+  Channel& channel = channels_[take->channel];
+  if (channel.waits) {
+    if (!channel.ghosts.has_next(n_ghost_messages())) return false;
+    take_ghosts(channel);
+  } else {
+    if (!channel.given.has_next(n_sources())) return false;
+    if (!setup.is_conservative()) return true;
+    start_round(channel);
+    if (!setup.has_projection()) return true;
   }
-  const bool takes_outside = std::holds_alternative<Nearest>(setup.policy);
-  for (const NearestSoFar& nearest : nearest_) {
-    const auto row = static_cast<std::size_t>(nearest.row);
-    const bool is_outside = status_[row] == Status::outside;
-    if (is_outside) distance_[row] = std::sqrt(nearest.squared_distance);
-    if (is_outside && !takes_outside) continue;
-    if (nearest.vertex < 0) {
-      if (!source_has_points_) continue;
-      fail(
-          ErrorCode::bad_mesh,
-          "no source piece owns a point that is a corner of its tetrahedra, so that no point has a "
-          "nearest vertex: set MeshView::n_owned in the source, too");
+  while (channel.projection->step(found_.mass)) {
+    send_owned(channel, take, send);
+    const std::size_t n = n_ghost_messages();
+    channel.waits = n > 0;
+    if (!channel.waits) continue;
+    if (!channel.ghosts.has_next(n)) return false;
+    take_ghosts(channel);
+  }
+  channel.result.assign(channel.projection->values().begin(), channel.projection->values().end());
+  channel.projection.reset();
+  return true;
+}
+
+std::size_t TargetSide::n_ghost_messages() const {
+  std::size_t n = 0;
+  for (const auto& [piece, neighbour] : neighbours_)
+    if (neighbour.takes_part && !neighbour.ghosts.empty()) ++n;
+  return n;
+}
+
+void TargetSide::start_round(Channel& channel) {
+  GivenPlaces::Sums loads = found_.given.add_up(channel.given.take(), found_.status.size(),
+                                                setup.kind == TransferKind::conservative_bounded);
+  const std::size_t n = loads.n_components;
+  for (const double load : loads.values)
+    if (std::isinf(load))
+      fail(ErrorCode::bad_value, "an integral of a ", name_of(setup.kind),
+           " transfer is infinite: a value is, or a value times a volume is above 1e308; scale the "
+           "field or the meshes");
+  if (!setup.has_projection()) {
+    for (std::size_t t = 0; t < found_.covered_volumes.size(); ++t)
+      for (std::size_t c = 0; c < n; ++c)
+        if (found_.covered_volumes[t] > 0) loads.values[t * n + c] /= found_.covered_volumes[t];
+    channel.result = std::move(loads.values);
+    return;
+  }
+  using Form = Projection::Form;
+  const Form form = setup.kind == TransferKind::conservative          ? Form::consistent
+                    : setup.kind == TransferKind::conservative_lumped ? Form::lumped
+                                                                      : Form::bounded;
+  channel.projection.emplace(found_.mass, n, form, std::move(loads.values),
+                             std::move(loads.ranges));
+}
+
+void TargetSide::send_owned(Channel& channel, detail::Taker take,
+                            const std::function<void(collide::OwnerId, GivenValues)>& send) {
+  const std::size_t n = channel.projection->n_columns();
+  const std::span<const double> shared = channel.projection->shared();
+  for (const auto& [piece, neighbour] : neighbours_) {
+    if (!neighbour.takes_part || neighbour.owned.empty()) continue;
+    GivenValues message{setup.id, {}, take, channel.n_steps, {}, true};
+    for (const auto& [id, point] : neighbour.owned) {
+      const auto row = shared.subspan(static_cast<std::size_t>(point) * n, n);
+      message.values.insert(message.values.end(), row.begin(), row.end());
     }
-    all[nearest.source].vertices.push_back(nearest.vertex);
-    rows_[nearest.source].push_back(nearest.row);
+    send(piece, std::move(message));
   }
-  for (std::size_t v = 0; v < status_.size(); ++v)
-    if (status_[v] >= Status::snapped)
-      worst_.add({mesh.point_ids[v], mesh.points[v], distance_[v], status_[v]});
-  asked_.clear();
-  nearest_ = {};
-  to_ask_ = {};
-  best_ = {};
-  nearest_parts_ = {};
-  sources_ = {};
-  Addressed<Choice> out;
-  for (auto& [source, choice] : all) {
-    choice.coupling = setup.id;
-    out.emplace_back(source, std::move(choice));
-  }
-  return out;
+  ++channel.n_steps;
 }
 
-void TargetSide::add(GivenValues rows) {
-  Rounds<GivenValues>& channel = channels_[rows.take->channel];
-  const std::uint32_t round = rows.round;
-  channel.add(round, std::move(rows));
-}
-
-bool TargetSide::has_next(std::uint64_t channel) const {
-  return channels_.at(channel).has_next(rows_.size());
-}
-
-void TargetSide::take_next(std::uint64_t channel, std::span<double> values) {
-  for (const GivenValues& message : channels_.at(channel).take()) {
-    const std::vector<std::int32_t>& rows = rows_.at(message.from);
-    const std::size_t n_components = message.values.size() / rows.size();
-    TESS_CHECK(values.size() == n_components * status_.size(), "the source gives ", n_components,
-               " components per point, but the target takes ", values.size(), " values for its ",
-               status_.size(), " points: take points × components");
-    for (std::size_t i = 0; i < rows.size(); ++i)
-      std::copy_n(message.values.data() + i * n_components, n_components,
-                  values.data() + static_cast<std::size_t>(rows[i]) * n_components);
+void TargetSide::take_ghosts(Channel& channel) {
+  const std::size_t n = channel.projection->n_columns();
+  const std::span<double> shared = channel.projection->shared();
+  for (const GivenValues& message : channel.ghosts.take()) {
+    const double* from = message.values.data();
+    for (const auto& [id, point] : neighbours_.at(message.from).ghosts) {
+      std::copy_n(from, n, shared.data() + static_cast<std::size_t>(point) * n);
+      from += n;
+    }
   }
-  fill_outside(setup.policy, status_, values);
+  channel.waits = false;
+}
+
+void TargetSide::write(std::uint64_t channel_id, std::span<double> values) {
+  Channel& channel = channels_.at(channel_id);
+  if (setup.is_conservative())
+    write_result(channel.result, values);
+  else
+    write_given(channel.given.take(), values);
+  fill_outside(setup.policy, found_.status, values);
+}
+
+void TargetSide::write_given(const std::vector<GivenValues>& messages, std::span<double> to) const {
+  for (const GivenValues& message : messages) {
+    const std::span<const std::uint32_t> places = found_.given.places_of(message.from);
+    const std::size_t n = message.values.size() / places.size();
+    TESS_CHECK(to.size() == n * found_.status.size(), "the source gives ", n,
+               " components per point, but the target takes ", to.size(), " values for its ",
+               found_.status.size(), " points: take points × components");
+    for (std::size_t i = 0; i < places.size(); ++i)
+      std::copy_n(message.values.data() + i * n, n, to.data() + places[i] * n);
+  }
+}
+
+void TargetSide::write_result(const std::vector<double>& result, std::span<double> to) const {
+  TESS_CHECK(to.size() == result.size(), "the source gives ", result.size(),
+             " values for the piece's ", found_.status.size(), " places, but the target takes ",
+             to.size(), ": take places × components");
+  if (result.empty()) return;
+  const std::size_t n = result.size() / found_.status.size();
+  for (std::size_t v = 0; v < found_.status.size(); ++v)
+    if (found_.status[v] != Status::outside)
+      std::copy_n(result.data() + v * n, n, to.data() + v * n);
 }
 
 }  // namespace tess::m2m

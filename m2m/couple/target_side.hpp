@@ -1,18 +1,22 @@
-// What a piece knows of a coupling that gives it values. During a search: the candidates so far.
-// After it: which source piece sends which rows, and the rows that have arrived.
+// What a piece knows of a coupling that gives it values. During a search: what it has asked and
+// heard. After it: which source pieces give which places values, and the rounds under way. Values
+// that are interpolated are written as they arrive. With conservative kinds loads arrive: means of
+// cells follow from them at once, and values of points from a projection, in which the pieces of
+// the target exchange the values of ghosts.
 #pragma once
 
-#include "m2m/couple/messages.hpp"
+#include "m2m/couple/overlap_search.hpp"
+#include "m2m/couple/point_search.hpp"
 #include "m2m/couple/rounds.hpp"
-#include "m2m/mesh_view.hpp"
-#include "m2m/rows/search/cover.hpp"
-#include "m2m/rows/search/nearest_parts.hpp"
+#include "m2m/rows/conservative/projection.hpp"
 
 #include <cstdint>
-#include <limits>
+#include <functional>
 #include <map>
+#include <optional>
 #include <span>
 #include <utility>
+#include <variant>
 #include <vector>
 
 namespace tess::m2m {
@@ -21,90 +25,76 @@ class TargetSide {
  public:
   CouplingSetup setup;
 
-  /// Forgets the last search, and returns boxes around the points.
+  /// Forgets the last search, and returns boxes around what gets values.
   [[nodiscard]] std::vector<Aabb> start_search(const MeshView& mesh);
+  /// What the piece reports of its points if there is a projection; `me`: the piece.
+  [[nodiscard]] std::vector<PointReport> point_reports(const MeshView& mesh,
+                                                       collide::OwnerId me) const;
   void add(const collide::Hits& hits);
-  /// The queries to all source pieces that may hold points.
-  [[nodiscard]] Addressed<DonorQuery> donor_queries(const MeshView& mesh);
-  void add(const DonorAnswer& answer);
-  void add(const NearestAnswer& answer);
-  /// True if no answer is under way.
-  [[nodiscard]] bool has_all_answers() const { return n_open_ == 0; }
-  /// After the last answer: true if points need the nearest vertex, which takes name_sources().
-  [[nodiscard]] bool needs_sources();
-  /// True between the two.
-  [[nodiscard]] bool waits() const { return !nearest_.empty() && sources_.empty(); }
-  /// `sources`: all source pieces, sorted by owner.
-  void name_sources(const MeshView& mesh, std::span<const SourcePiece> sources);
-  /// The next queries for points that need a nearest vertex; none if all are answered.
-  [[nodiscard]] Addressed<NearestQuery> nearest_queries(const MeshView& mesh);
-  /// Ends the search: what each source piece that was asked shall send.
-  [[nodiscard]] Addressed<Choice> choices(const MeshView& mesh);
-  [[nodiscard]] const Tally& tally() const { return tally_; }
-  [[nodiscard]] const WorstPlaces& worst() const { return worst_; }
+  /// Returns true if the search goes on by next_step().
+  [[nodiscard]] bool add(SearchAnswer answer);
+  /// `sources`: all source pieces, sorted by owner; or the first one, if no piece asks for all.
+  /// Returns the same.
+  [[nodiscard]] bool name_sources(const MeshView& mesh, std::span<const SourcePiece> sources);
+  /// What to send now. The first step follows the hits.
+  [[nodiscard]] SearchStep next_step(const MeshView& mesh);
+  /// What the search has found.
+  [[nodiscard]] const TargetFound& found() const { return found_; }
+  /// True if no source piece gives this one values, and it knows none that could report rounds. It
+  /// may have no places for values: it takes rounds, too.
+  [[nodiscard]] bool is_alone() const { return n_sources() == 0 && !least_source_; }
+  [[nodiscard]] std::size_t n_sources() const { return found_.given.n_sources(); }
 
-  /// Per point owned.
-  [[nodiscard]] std::span<const Status> status() const { return status_; }
-  [[nodiscard]] std::span<const double> distance() const { return distance_; }
-  [[nodiscard]] std::size_t n_sources() const { return rows_.size(); }
-
-  /// The points that a source piece gives values to, in its order.
-  [[nodiscard]] std::span<const std::int32_t> rows_from(collide::OwnerId source) const {
-    return rows_.at(source);
-  }
-
-  void add(GivenValues rows);
-  /// True if the next round of a channel has arrived as a whole.
-  [[nodiscard]] bool has_next(std::uint64_t channel) const;
-  /// Writes it to `values`: n_owned × n_components, row-major.
-  void take_next(std::uint64_t channel, std::span<double> values);
+  void add(GivenValues given);
+  /// Goes on with a channel as far as its messages allow. Sends values to holders of ghosts by
+  /// send(piece, values). True if a round can be written.
+  [[nodiscard]] bool advance(detail::Taker take,
+                             const std::function<void(collide::OwnerId, GivenValues)>& send);
+  /// Writes it to `values`: n_places × n_components, row-major.
+  void write(std::uint64_t channel, std::span<double> values);
 
   template <class Ar>
   void serialize(Ar& ar) {
-    ar(setup, cover_, asked_, best_, nearest_, to_ask_, nearest_parts_, sources_,
-       source_has_points_, n_open_, tally_, worst_, status_, distance_, rows_, channels_);
+    ar(setup, search_, n_open_, found_, least_source_, neighbours_, channels_);
   }
 
  private:
-  /// The points that were sent to a source piece, and those of them that it holds.
-  struct Asked {
-    std::vector<std::uint32_t> boxes, source_boxes;  // of the two covers, from the hits
-    std::vector<std::int32_t> rows;                  // per point sent
-    std::vector<std::int32_t> held;                  // per answer: its row
+  /// A piece that shares points with this one. The points are sorted by id.
+  struct Neighbour {
+    bool takes_part = false;
+    std::vector<std::pair<GlobalId, std::int32_t>> owned{};   // here; ghosts there
+    std::vector<std::pair<GlobalId, std::int32_t>> ghosts{};  // here; owned there
     template <class Ar>
     void serialize(Ar& ar) {
-      ar(boxes, source_boxes, rows, held);
+      ar(takes_part, owned, ghosts);
     }
   };
-  /// The best candidate of a point, and the source piece that has it.
-  struct Best {
-    Candidate candidate{};
-    collide::OwnerId source{};
+  struct Channel {
+    Rounds given{}, ghosts{};
+    std::optional<Projection> projection{};  // of the present round
+    std::uint32_t n_steps = 0;               // of all rounds
+    bool waits = false;                      // for ghosts
+    std::vector<double> result{};            // of loads
+    template <class Ar>
+    void serialize(Ar& ar) {
+      ar(given, ghosts, projection, n_steps, waits, result);
+    }
   };
-  /// The nearest vertex found so far for a point, and the piece that was asked last.
-  struct NearestSoFar {
-    std::int32_t row = 0;
-    double squared_distance = std::numeric_limits<double>::infinity();
-    GlobalId id = std::numeric_limits<GlobalId>::max();
-    VertexId vertex = -1;
-    collide::OwnerId source{};
-    NearestParts::RankedPart asked{};
-  };
-  Cover cover_;
-  std::map<collide::OwnerId, Asked> asked_;
-  std::vector<Best> best_;             // per point owned
-  std::vector<NearestSoFar> nearest_;  // of the points that need a nearest vertex
-  std::vector<std::uint32_t> to_ask_;  // those of them that may have a nearer one in another piece
-  NearestParts nearest_parts_;
-  std::vector<collide::OwnerId> sources_;  // of the parts in nearest_parts_
-  bool source_has_points_ = false;         // any of these pieces has
-  std::uint64_t n_open_ = 0;
-  Tally tally_;
-  WorstPlaces worst_;
-  std::vector<Status> status_;
-  std::vector<double> distance_;                                // per point owned
-  std::map<collide::OwnerId, std::vector<std::int32_t>> rows_;  // per source piece, in its order
-  std::map<std::uint64_t, Rounds<GivenValues>> channels_;
+
+  [[nodiscard]] std::size_t n_ghost_messages() const;
+  void start_round(Channel& channel);
+  void send_owned(Channel& channel, detail::Taker take,
+                  const std::function<void(collide::OwnerId, GivenValues)>& send);
+  void take_ghosts(Channel& channel);
+  void write_given(const std::vector<GivenValues>& messages, std::span<double> to) const;
+  void write_result(const std::vector<double>& result, std::span<double> to) const;
+
+  std::variant<std::monostate, PointSearch, OverlapSearch> search_;  // under way
+  std::size_t n_open_ = 0;                                           // answers
+  TargetFound found_;
+  std::optional<collide::OwnerId> least_source_;  // of all, if the piece was told
+  std::map<collide::OwnerId, Neighbour> neighbours_;
+  std::map<std::uint64_t, Channel> channels_;
 };
 
 }  // namespace tess::m2m

@@ -1,4 +1,4 @@
-#include "m2m/couple/overlap_loads.hpp"
+#include "m2m/couple/given_places.hpp"
 
 #include "runtime/core/check.hpp"
 
@@ -9,39 +9,40 @@
 
 namespace tess::m2m {
 
-void OverlapLoads::add_source(collide::OwnerId piece, std::vector<std::uint32_t> places) {
+void GivenPlaces::add_source(collide::OwnerId piece, std::vector<std::uint32_t> places) {
   if (!places.empty()) sources_[piece].places = std::move(places);
 }
 
-Addressed<std::vector<std::uint8_t>> OverlapLoads::shared() {
+Addressed<std::vector<std::uint32_t>> GivenPlaces::keep_rows() {
   std::unordered_map<std::uint32_t, std::uint32_t> n_sources;
   for (const auto& [piece, source] : sources_)
     for (const std::uint32_t place : source.places) ++n_sources[place];
-  Addressed<std::vector<std::uint8_t>> out;
+  Addressed<std::vector<std::uint32_t>> out;
   for (auto& [piece, source] : sources_) {
-    std::vector<std::uint8_t> flags;
-    for (const std::uint32_t place : std::exchange(source.places, {})) {
-      const bool is_shared = n_sources[place] > 1;
-      flags.push_back(is_shared ? 1 : 0);
-      (is_shared ? source.shared : source.places).push_back(place);
+    std::vector<std::uint32_t> kept;
+    const std::vector<std::uint32_t> all = std::exchange(source.places, {});
+    for (std::size_t row = 0; row < all.size(); ++row) {
+      const bool is_shared = n_sources[all[row]] > 1;
+      (is_shared ? source.shared : source.places).push_back(all[row]);
+      if (!is_shared) kept.push_back(static_cast<std::uint32_t>(row));
     }
-    out.emplace_back(piece, std::move(flags));
+    out.emplace_back(piece, std::move(kept));
   }
   return out;
 }
 
-void OverlapLoads::join() {
+void GivenPlaces::join(std::vector<std::pair<collide::OwnerId, PartialRows>> partial) {
   struct SharedWeight {
     std::uint32_t place;
     GlobalId id;
     VertexId value;  // among those of all sources
     double weight;
   };
-  std::sort(partial_.begin(), partial_.end(),
-            [](const PartialRows& a, const PartialRows& b) { return a.from < b.from; });
   std::vector<SharedWeight> entries;
-  for (const PartialRows& rows : partial_) {
-    Source& source = sources_.at(rows.from);
+  std::sort(partial.begin(), partial.end(),
+            [](const auto& a, const auto& b) { return a.first < b.first; });
+  for (const auto& [piece, rows] : partial) {
+    Source& source = sources_.at(piece);
     source.first_value = n_values_;
     source.n_values = static_cast<std::uint32_t>(rows.ids.size());
     for (std::size_t row = 0; row < source.shared.size(); ++row)
@@ -51,7 +52,6 @@ void OverlapLoads::join() {
     source.shared = {};
     n_values_ += source.n_values;
   }
-  partial_ = {};
   // By id, as in the rows of one piece; of several copies of an unknown, the first piece's is used.
   std::sort(entries.begin(), entries.end(), [](const SharedWeight& a, const SharedWeight& b) {
     return std::tie(a.place, a.id, a.value) < std::tie(b.place, b.id, b.value);
@@ -70,8 +70,8 @@ void OverlapLoads::join() {
   }
 }
 
-OverlapLoads::Sums OverlapLoads::add_up(const std::vector<GivenValues>& messages,
-                                        std::size_t n_places, bool with_ranges) const {
+GivenPlaces::Sums GivenPlaces::add_up(const std::vector<GivenValues>& messages,
+                                      std::size_t n_places, bool with_ranges) const {
   constexpr double inf = std::numeric_limits<double>::infinity();
   Sums out;
   std::vector<double> values;

@@ -1,5 +1,5 @@
-#include "m2m/couple/overlap_source.hpp"
-
+// Conservative kinds: the rows by which a source piece computes the loads of target pieces.
+#include "m2m/couple/source_side.hpp"
 #include "runtime/core/check.hpp"
 
 #include <algorithm>
@@ -7,19 +7,11 @@
 
 namespace tess::m2m {
 
-std::vector<Aabb> OverlapSource::start_search(const MeshView& mesh) {
-  validate(mesh);
-  given_.clear();
-  rounds_.clear();
-  rows_of_search_.set(mesh, setup.source_values);
-  cover_ = cover_tets(mesh.points, mesh.own_tets());
-  return cover_.boxes;
-}
-
-OverlapAnswer OverlapSource::answer(const MeshView& mesh, const OverlapQuery& query) {
-  OverlapRows found = overlap_rows(mesh, setup.source_values, cover_, query.tets);
-  OverlapAnswer answer{setup.id,      {}, std::move(found.tets), std::move(found.covered), {},
-                       found.n_tested};
+OverlapAnswer SourceSide::answer_overlaps(const MeshView& mesh, collide::OwnerId target,
+                                          const TargetTets& tets, std::uint64_t& n_tested) {
+  OverlapRows found = overlap_rows(mesh, setup.source_values, cover_, tets);
+  n_tested += found.n_tested;
+  OverlapAnswer answer{std::move(found.tets), std::move(found.covered), {}};
   Rows<double> rows;
   for (std::size_t row = 0; row < found.rows.n_rows(); ++row) {
     if (found.rows.columns_of(row).empty()) continue;
@@ -28,27 +20,27 @@ OverlapAnswer OverlapSource::answer(const MeshView& mesh, const OverlapQuery& qu
   }
   rows.columns = std::move(found.rows.columns);
   rows.weights = std::move(found.rows.weights);
-  if (!answer.rows.empty()) given_[query.from].rows = std::move(rows);
+  if (!answer.rows.empty()) given_[target].rows = std::move(rows);
   return answer;
 }
 
-PartialRows OverlapSource::share(const MeshView& mesh, const SharedRows& shared) {
-  Given& given = given_.at(shared.from);
+PartialRows SourceSide::choose_rows(const MeshView& mesh, const Choice& choice) {
+  Given& given = given_.at(choice.from);
   const Rows<double> all = std::exchange(given.rows, {});
-  PartialRows partial{setup.id, {}, {}, {0}, {}, {}};
+  PartialRows partial;
+  auto kept = choice.kept.begin();
   const auto id_of = [&](VertexId u) { return id_of_unknown(mesh, setup.source_values, u); };
   for (std::size_t row = 0; row < all.n_rows(); ++row) {
     const auto columns = all.columns_of(row);
     const auto weights = all.weights_of(row);
-    if (shared.shared[row] != 0) {
-      for (std::size_t k = 0; k < columns.size(); ++k) {
-        given.sent.push_back(columns[k]);
-        partial.weights.push_back(weights[k]);
-      }
-      partial.first.push_back(static_cast<std::uint32_t>(partial.weights.size()));
-    } else {
+    if (kept != choice.kept.end() && *kept == row) {
+      ++kept;
       for (std::size_t k = 0; k < columns.size(); ++k) given.rows.add(columns[k], weights[k]);
       given.rows.end_row();
+    } else {
+      given.sent.insert(given.sent.end(), columns.begin(), columns.end());
+      partial.weights.insert(partial.weights.end(), weights.begin(), weights.end());
+      partial.first.push_back(static_cast<std::uint32_t>(partial.weights.size()));
     }
   }
   const std::vector<VertexId> unknowns = given.sent;
@@ -68,18 +60,8 @@ PartialRows OverlapSource::share(const MeshView& mesh, const SharedRows& shared)
   return partial;
 }
 
-std::size_t OverlapSource::components_of(const MeshView& mesh,
-                                         std::span<const double> values) const {
-  const Centring centring = setup.source_values;
-  const std::size_t n_rows = n_unknowns(mesh, centring);
-  if (n_rows == 0) return 1;
-  TESS_CHECK(values.size() % n_rows == 0, "a piece with ", n_rows, " ", rows_of(centring),
-             " gives ", values.size(), " values: give as many rows, ghosts included");
-  return values.size() / n_rows;
-}
-
-std::vector<double> OverlapSource::loads(const Given& given, std::span<const double> values,
-                                         std::size_t n_components) const {
+std::vector<double> SourceSide::loads(const Given& given, std::span<const double> values,
+                                      std::size_t n_components) const {
   const std::size_t n_loads = given.rows.n_rows() * n_components;
   std::vector<double> out(n_loads);
   m2m::apply(given.rows, values, n_components, out);

@@ -1,29 +1,34 @@
-// Where the loads of a target piece's places come from. A row that only one source piece has stays
-// there, and its load is sent. The parts of a row that several source pieces have come here: they
-// are added, and the row is applied here, to values that these pieces send. Both compute a load
-// from the same weights in the same order of ids.
+// Which source pieces give values to the places of a target piece. A source piece gives values to
+// some places. If the kind is conservative these are loads, and a row that only one source piece has
+// stays there. The parts of a row that several source pieces have come here: they are added, and
+// the row is applied here, to values that these pieces send. Both compute a load from the same
+// weights in the same order of ids.
 #pragma once
 
-#include "m2m/couple/overlap_messages.hpp"
+#include "m2m/couple/messages.hpp"
 
 #include <cstdint>
 #include <map>
+#include <span>
 #include <utility>
 #include <vector>
 
 namespace tess::m2m {
 
-class OverlapLoads {
+class GivenPlaces {
  public:
-  /// The places for which a source piece has a row, in its order.
+  /// The places that a source piece gives values or has rows for, in its order.
   void add_source(collide::OwnerId piece, std::vector<std::uint32_t> places);
-  /// After all of these: per source piece and row, 1 if others have a part of the row, too.
-  [[nodiscard]] Addressed<std::vector<std::uint8_t>> shared();
-  void add(PartialRows partial) { partial_.push_back(std::move(partial)); }
-  /// After all of these.
-  void join();
+  /// After all of these, for rows: which ones each source piece keeps, as positions among its own.
+  [[nodiscard]] Addressed<std::vector<std::uint32_t>> keep_rows();
+  /// After all of these: the other rows of the source pieces.
+  void join(std::vector<std::pair<collide::OwnerId, PartialRows>> partial);
 
   [[nodiscard]] std::size_t n_sources() const { return sources_.size(); }
+  /// The places that a source piece gives values, in its order.
+  [[nodiscard]] std::span<const std::uint32_t> places_of(collide::OwnerId source) const {
+    return sources_.at(source).places;
+  }
 
   struct Sums {
     std::size_t n_components = 0;
@@ -36,12 +41,12 @@ class OverlapLoads {
 
   template <class Ar>
   void serialize(Ar& ar) {
-    ar(sources_, partial_, n_values_, shared_places_, shared_rows_);
+    ar(sources_, n_values_, shared_places_, shared_rows_);
   }
 
  private:
   struct Source {
-    std::vector<std::uint32_t> places{};  // whose loads it sends, in its order
+    std::vector<std::uint32_t> places{};  // whose values or loads it sends, in its order
     std::vector<std::uint32_t> shared{};  // of which it has a part, in its order
     std::uint32_t first_value = 0;        // of its unknowns, among those of all sources
     std::uint32_t n_values = 0;
@@ -52,7 +57,6 @@ class OverlapLoads {
   };
 
   std::map<collide::OwnerId, Source> sources_;
-  std::vector<PartialRows> partial_;          // until join()
   std::uint32_t n_values_ = 0;                // of all sources
   std::vector<std::uint32_t> shared_places_;  // whose loads are computed here
   Rows<double> shared_rows_;                  // for each; columns: values of all sources
