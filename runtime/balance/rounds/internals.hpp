@@ -12,6 +12,7 @@
 
 namespace tess::balance {
 
+using detail::BalancedElements;
 using detail::BalanceRecord;
 using detail::Collection;
 using detail::Counted;
