@@ -33,7 +33,8 @@ class GridChooser {
                                  bool as_points = false, double scale = 1, const Place& place = {});
   /// The same with the sample of the last choose(), for the same problem, region and scale.
   [[nodiscard]] Choice<D> choose_again(const Problem<Real, D>& problem, const Box<Real, D>& region,
-                                       bool as_points, double scale, const Place& place) const;
+                                       bool as_points, double scale = 1,
+                                       const Place& place = {}) const;
 
  private:
   struct Sample {

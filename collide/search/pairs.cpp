@@ -100,10 +100,11 @@ class Searcher {
   bool solved_on_one_level(SubProblem& whole) {
     const std::size_t n = whole.problem.a.size() + whole.problem.b.size();
     constexpr std::size_t many = 4096;
-    if (n > many &&
-        cost_of(whole) > 2 * search_.chooser().choose(whole.problem, whole.bounds, true).cost &&
-        levels_seem_cheaper(whole))
-      return false;
+    if (n > many) {
+      const double cost = cost_of(whole);  // the chooser has its sample now
+      const Choice<D> points = search_.chooser().choose_again(whole.problem, whole.bounds, true);
+      if (cost > 2 * points.cost && levels_seem_cheaper(whole)) return false;
+    }
     search_.set_most_entries(4 * n + many);
     const bool solved = search_.solve(whole.problem, whole.bounds, false, whole.choice);
     search_.set_most_entries(~std::size_t{0});
