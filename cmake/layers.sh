@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Checks every include against layers.txt, and that each arrow and each file there is in use; `--picture` prints rooms, floors and upward arrows of each module instead.
+# Checks every include against layers.txt, and that each arrow and each file there is in use; `--picture` prints houses, rooms, floors and arrows of each module instead.
+# A house is a folder of a module with its rooms; no circle runs through houses either.
 # `cmake/layers.sh --root ROOT` checks the tree at ROOT, without git.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -22,6 +23,7 @@ sources |
     }
     function refuse(text) { print text; failed = 1 }
     function module_of(room) { sub(/\/.*/, "", room); return room }
+    function house_of(room) { return match(room, /^[^\/]*\/[^\/]*/) ? substr(room, 1, RLENGTH) : room }
     BEGIN {
       while ((getline line < lines) > 0) {
         sub(/#.*/, "", line)
@@ -59,18 +61,25 @@ sources |
       }
       for (file in member)
         if (system("test -f " file)) refuse(lines ": there is no file " file)
-      if (picture) {
-        printf "%-10s %6s %7s %7s %s\n", "module", "rooms", "floors", "arrows", "not allowed"
-        for (k = 1; k <= n_known; ++k) {  # from below: what a room includes has its floor already
-          room = order[k]; module = module_of(room); floor[room] = 1
-          n = split(arrows[room], below, " ")
-          for (i = 1; i <= n; ++i)
-            if (module_of(below[i]) == module && floor[below[i]] >= floor[room]) floor[room] = floor[below[i]] + 1
-          ++n_rooms[module]
-          if (floor[room] > top[module]) top[module] = floor[room]
+      for (key in seen) {
+        split(key, pair, SUBSEP)
+        if (module_of(pair[1]) == module_of(pair[2])) ++n_arrows[module_of(pair[1])]
+        if (house_of(pair[1]) != house_of(pair[2])) between[house_of(pair[1]), house_of(pair[2])] = 1
+      }
+      for (k = 1; k <= n_known; ++k) { ++n_rooms[module_of(order[k])]; if (!((h = house_of(order[k])) in floor)) { floor[h] = 1; ++n_houses[module_of(h)] } }
+      for (moved = 1; moved;) {  # until each house stands on those that it includes
+        moved = 0
+        for (key in between) {
+          split(key, pair, SUBSEP); h = pair[1]
+          if (module_of(pair[2]) != module_of(h) || floor[pair[2]] < floor[h]) continue
+          floor[h] = floor[pair[2]] + 1; moved = 1
+          if (floor[h] > n_known) { refuse(lines ": a circle runs through the houses " h " and " pair[2]); moved = 0; break }
         }
-        for (key in seen) { split(key, pair, SUBSEP); if (module_of(pair[1]) == module_of(pair[2])) ++n_arrows[module_of(pair[1])] }
-        for (module in n_rooms) printf "%-10s %6d %7d %7d %d\n", module, n_rooms[module], top[module], n_arrows[module], upward[module]
+      }
+      for (h in floor) if (floor[h] > top[module_of(h)]) top[module_of(h)] = floor[h]
+      if (picture) {
+        printf "%-10s %7s %6s %7s %7s %s\n", "module", "houses", "rooms", "floors", "arrows", "not allowed"
+        for (module in n_rooms) printf "%-10s %7d %6d %7d %7d %d\n", module, n_houses[module], n_rooms[module], top[module], n_arrows[module], upward[module]
       } else if (!failed) print "layers: every include is allowed, every arrow is used"
       exit failed
     }'

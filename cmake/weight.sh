@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # weight.sh [ROOT]: what there is to hold in mind, by module: lines, sources, the fullest folder, public headers and the types that
-# they declare outside of `detail`, rooms, floors and arrows (as layers.sh --picture).
+# they declare outside of `detail`, houses, rooms, floors of houses and arrows of rooms (as layers.sh --picture).
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 cd "${1:-$here/..}"
@@ -24,7 +24,7 @@ public_types() {
        END { print n + 0 }' "$@"
 }
 
-printf '%-9s %8s %8s %8s %9s %7s %7s %7s %7s\n' module lines sources fullest headers types rooms floors arrows
+printf '%-9s %8s %8s %8s %9s %7s %7s %7s %7s %7s\n' module lines sources fullest headers types houses rooms floors arrows
 for module in runtime collide m2m apps tests; do
   mapfile -t files < <(sources "$module")
   lines=$(cat "${files[@]}" | wc -l)
@@ -34,6 +34,6 @@ for module in runtime collide m2m apps tests; do
     mapfile -t public < <(public_headers "$module")
     headers=${#public[@]} types=$(public_types "${public[@]}")
   fi
-  read -r rooms floors arrows < <(bash "$here/layers.sh" --root "$PWD" --picture 2>/dev/null | awk -v m="$module" '$1 == m { print $2, $3, $4; found = 1 } END { if (!found) print "- - -" }') || true
-  printf '%-9s %8d %8d %8d %9s %7s %7s %7s %7s\n' "$module" "$lines" "${#files[@]}" "$fullest" "$headers" "$types" "$rooms" "$floors" "$arrows"
+  read -r houses rooms floors arrows < <(bash "$here/layers.sh" --root "$PWD" --picture 2>/dev/null | awk -v m="$module" '$1 == m { print $2, $3, $4, $5; found = 1 } END { if (!found) print "- - - -" }') || true
+  printf '%-9s %8d %8d %8d %9s %7s %7s %7s %7s %7s\n' "$module" "$lines" "${#files[@]}" "$fullest" "$headers" "$types" "$houses" "$rooms" "$floors" "$arrows"
 done

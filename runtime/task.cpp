@@ -3,7 +3,7 @@
 #include "runtime/arrays/collection.hpp"
 #include "runtime/core/check.hpp"
 #include "runtime/pe/pe_action.hpp"
-#include "runtime/watch/report/pe_watch.hpp"
+#include "runtime/pe/report/pe_watch.hpp"
 
 #include <cstdint>
 #include <cstdlib>

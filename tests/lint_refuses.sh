@@ -73,6 +73,11 @@ case $check in
     refuses cmake/layers.txt 'runtime/core : runtime/pe' 'runtime/core may not stand on runtime/pe'
     refuses collide/serial/grid.cpp '// Nothing.' 'nothing in collide/serial includes runtime/core'
     refuses cmake/layers.txt 'm2m/vocabulary m2m/gone.hpp :' 'there is no file m2m/gone.hpp'
+    # A room that stands on its house's neighbour, which stands on the house.
+    mkdir runtime/core/late
+    echo '#include "runtime/pe/queue.hpp"' >runtime/core/late/user.hpp
+    refuses cmake/layers.txt $'runtime/core :\nruntime/pe : runtime/core\nruntime/core/late : runtime/pe' 'a circle runs through the houses runtime/'
+    rm -r runtime/core/late
     ;;
   words)
     refuses runtime/core/number.hpp '// Waits for nobody.' '"nobody" in:'

@@ -22,12 +22,12 @@ struct UnderWay {
   UnderWay& operator=(const UnderWay& /*of_another_handle*/) { return *this; }
 };
 /// One of them, while it lives.
-class Counted {
+class OneUnderWay {
  public:
-  explicit Counted(int& n) : n_(n) { ++n_; }
-  ~Counted() { --n_; }
-  Counted(const Counted&) = delete;
-  Counted& operator=(const Counted&) = delete;
+  explicit OneUnderWay(int& n) : n_(n) { ++n_; }
+  ~OneUnderWay() { --n_; }
+  OneUnderWay(const OneUnderWay&) = delete;
+  OneUnderWay& operator=(const OneUnderWay&) = delete;
 
  private:
   int& n_;
@@ -186,7 +186,7 @@ TaskOf<SearchSummary> AnyCoupling::search() {
              "a coupling searches while a search or an application of it is under way: co_await "
              "that first");
   state.require_usable("searched");
-  const Counted counted(state.under_way.n_searches);
+  const OneUnderWay one(state.under_way.n_searches);
   state.enter("broad");
   const Time start = now();
   co_await collide_covers();
@@ -246,7 +246,7 @@ Task AnyCoupling::apply(detail::Giver give, detail::Taker take,
              "co_await search() first");
   TESS_CHECK(state.under_way.n_searches == 0,
              "a coupling is applied while a search of it is under way: co_await that first");
-  const Counted counted(state.under_way.n_applications);
+  const OneUnderWay one(state.under_way.n_applications);
   const std::shared_ptr<Turns> turns = state.turns;
   co_await turns->take(take->channel);
   std::exception_ptr thrown;  // the next one has its turn all the same

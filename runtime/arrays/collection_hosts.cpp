@@ -65,7 +65,7 @@ void BroadcastHostOfCollection::send(PeId to, const BroadcastDrop& drop) {
 }
 
 void BroadcastHostOfCollection::flush() {
-  collection_.pe().exchange().flush();
+  collection_.pe().peers().flush();
 }
 
 void BroadcastHostOfCollection::apply(const NumberedCall& call) {

@@ -9,8 +9,8 @@
 #include "runtime/core/error.hpp"
 #include "runtime/core/text.hpp"
 #include "runtime/pe/census.hpp"
+#include "runtime/pe/report/waiting.hpp"
 #include "runtime/pe/runtime.hpp"
-#include "runtime/watch/report/waiting.hpp"
 
 #include <algorithm>
 #include <bit>

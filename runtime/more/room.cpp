@@ -30,7 +30,7 @@ bool RoomAwait::await_ready() const {
   Pe& pe = current_pe();
   if (pe.machine().same_process(pe.id(), to_)) return false;
   const ProcessId process = pe.machine().process_of(to_);
-  return pe.exchange().outbox().has_room(process) && !pe.exchange().outbox().awaited(process);
+  return pe.peers().outbox().has_room(process) && !pe.peers().outbox().awaited(process);
 }
 
 void RoomAwait::await_suspend(Task::Handle task) const {
@@ -41,8 +41,7 @@ void RoomAwait::await_suspend(Task::Handle task) const {
   } else if (pe.machine().same_process(pe.id(), to_)) {
     send_system<&visit_arrives>(pe, to_, Visit{pe.id(), task.address()});
   } else {
-    pe.exchange().outbox().wait_for_room(pe.machine().process_of(to_),
-                                         [task] { resume_later(task); });
+    pe.peers().outbox().wait_for_room(pe.machine().process_of(to_), [task] { resume_later(task); });
   }
 }
 
@@ -53,7 +52,7 @@ namespace tess {
 bool has_room(PeId to) {
   Pe& pe = current_pe();
   return pe.machine().same_process(pe.id(), to) ||
-         pe.exchange().outbox().has_room(pe.machine().process_of(to));
+         pe.peers().outbox().has_room(pe.machine().process_of(to));
 }
 
 }  // namespace tess

@@ -4,8 +4,8 @@
 
 #include "runtime/pe/pe.hpp"
 #include "runtime/pe/queues/outbox.hpp"
+#include "runtime/pe/report/waiting.hpp"
 #include "runtime/pe/runtime.hpp"
-#include "runtime/watch/report/waiting.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -48,7 +48,7 @@ Waits census_of_running(Pe& pe) {
               text(pe.id(), n_ready == 1 ? ": 1 message is" : text(": ", n_ready, " messages are"),
                    " ready to run"));
   for (std::int32_t process = 0; process < pe.machine().n_processes(); ++process) {
-    if (const std::size_t n = pe.exchange().outbox().n_waiting(ProcessId{process}); n != 0)
+    if (const std::size_t n = pe.peers().outbox().n_waiting(ProcessId{process}); n != 0)
       waits.add(WaitRank::queue,
                 text(pe.id(), n == 1 ? ": 1 message waits" : text(": ", n, " messages wait"),
                      " for room to ", ProcessId{process}));

@@ -2,7 +2,7 @@
 
 #include "runtime/core/check.hpp"
 #include "runtime/pe/pe.hpp"
-#include "runtime/watch/report/waiting.hpp"
+#include "runtime/pe/report/waiting.hpp"
 
 #include <boost/unordered/unordered_flat_map.hpp>
 

@@ -3,7 +3,7 @@
 #include "runtime/pe/measure/idle_time.hpp"
 #include "runtime/pe/message_audit.hpp"
 #include "runtime/pe/pe.hpp"
-#include "runtime/watch/report/pe_watch.hpp"
+#include "runtime/pe/report/pe_watch.hpp"
 
 #include <utility>
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "runtime/pe/interfaces/runtime_options.hpp"
-#include "runtime/watch/report/audit.hpp"
+#include "runtime/pe/report/audit.hpp"
 #include "runtime/wire/messages/envelope.hpp"
 
 #include <cstdint>

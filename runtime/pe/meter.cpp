@@ -4,7 +4,7 @@
 #include "runtime/pe/interfaces/scope_listener.hpp"
 #include "runtime/pe/measure/load_record.hpp"
 #include "runtime/pe/pe.hpp"
-#include "runtime/watch/report/pe_watch.hpp"
+#include "runtime/pe/report/pe_watch.hpp"
 
 #include <algorithm>
 

@@ -49,7 +49,7 @@ Pe::Pe(PeId id, Runtime& runtime, Machine& machine, Pool& pool, std::uint64_t se
       message_cost_(machine.message_cost()),
       completion_(completion_messages_, id_, n_pes_),
       forced_migrations_(n_pes_, mix(seed ^ mix(static_cast<std::uint64_t>(id.value)))),
-      exchange_(*this, messages) {}
+      peers_(*this, messages) {}
 
 Pe::~Pe() {
   for (const HostedCollection* collection : collections_.all()) {
@@ -79,10 +79,10 @@ void Pe::carry(PeId to, Envelope* message) {
     enqueue(message);
   } else {
     ++statistics_.sent_remote;
-    if (exchange_.in_process(to)) {
-      exchange_.pass(to, message, sizeof(Envelope));
+    if (peers_.in_process(to)) {
+      peers_.pass(to, message, sizeof(Envelope));
     } else {
-      exchange_.pack(message);
+      peers_.pack(message);
     }
   }
 }
@@ -103,7 +103,7 @@ void Pe::hand_over(Envelope* message, std::size_t n_bytes) {
       audit->arrives(*message);
     enqueue(message);
   } else {
-    exchange_.pass(message->target, message, n_bytes);
+    peers_.pass(message->target, message, n_bytes);
   }
 }
 
@@ -156,8 +156,8 @@ void Pe::run(Envelope* message) {
   of_message_.epoch = EpochId{};
   of_message_.led_by = 0;
   if (charge != 0) [[unlikely]]
-    exchange_.repay(
-        sender, charge);  // before it counts as processed: the run is not over while credit is due
+    peers_.repay(sender,
+                 charge);  // before it counts as processed: the run is not over while credit is due
   if (counted) completion_.hop_processed();
 }
 
@@ -211,14 +211,14 @@ std::size_t Pe::step(std::size_t most) {
     const Action& action = *message->action;
     if (const auto* soon = static_cast<const Envelope*>(ready_.ahead(2)); soon != nullptr)
       __builtin_prefetch(soon->receiver, 1);
-    if (exchange_.holds() && !action.quick()) [[unlikely]] {
-      const std::uint64_t began = exchange_.before_slow();
+    if (peers_.holds() && !action.quick()) [[unlikely]] {
+      const std::uint64_t began = peers_.before_slow();
       run_one(message);
-      exchange_.slow_ran(action, began);
+      peers_.slow_ran(action, began);
     } else {
       run_one(message);
     }
-    if (exchange_.holds()) exchange_.ran(action);
+    if (peers_.holds()) peers_.ran(action);
   }
   statistics_.messages += n;
   idle_calls_ = 0;
@@ -227,7 +227,7 @@ std::size_t Pe::step(std::size_t most) {
     messages_since_report_ = 0;
     completion_.report_epochs();
   }
-  if (n <= few_messages) exchange_.flush();
+  if (n <= few_messages) peers_.flush();
   if (meter() != nullptr) [[unlikely]]
     meter()->step_ends();
   // The simulated cost of messages is not load: a balancer must not see it as background.
@@ -239,7 +239,7 @@ std::size_t Pe::step(std::size_t most) {
 void Pe::busy() {
   const RunsOn here(*this);
   messages_since_report_ = 0;
-  if (completion_.report_epochs()) exchange_.flush();
+  if (completion_.report_epochs()) peers_.flush();
 }
 
 bool Pe::idle() {
@@ -259,7 +259,7 @@ bool Pe::idle() {
   } else {
     pool_.flush();
   }
-  const bool works = exchange_.flush() || busy || !ready_.empty();
+  const bool works = peers_.flush() || busy || !ready_.empty();
   if (IdleTime* const idle_time = measuring_.idle_time(); idle_time != nullptr && !works)
       [[unlikely]]
     idle_time->begin(now());
@@ -269,7 +269,7 @@ bool Pe::idle() {
 void Pe::drop_all() {
   while (!ready_.empty()) discard(static_cast<Envelope*>(ready_.pop()));
   collections_.drop_all();
-  exchange_.drop_all();
+  peers_.drop_all();
   timers_.drop_all();
   dropping_ = true;
   end_all(suspended_);

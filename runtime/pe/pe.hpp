@@ -7,11 +7,11 @@
 #include "runtime/core/check.hpp"
 #include "runtime/pe/completion/counted.hpp"
 #include "runtime/pe/completion_messages.hpp"
-#include "runtime/pe/exchange.hpp"
 #include "runtime/pe/forced_migrations.hpp"
 #include "runtime/pe/hosted_collections.hpp"
 #include "runtime/pe/measuring.hpp"
 #include "runtime/pe/nesting.hpp"
+#include "runtime/pe/peers.hpp"
 #include "runtime/pe/pending_error.hpp"
 #include "runtime/pe/queues/ready_queue.hpp"
 #include "runtime/pe/tables/future_table.hpp"
@@ -74,7 +74,7 @@ class Pe {
   [[nodiscard]] HostedCollections& collections() { return collections_; }
   [[nodiscard]] Completion& completion() { return completion_; }
   [[nodiscard]] PendingError& error() { return error_; }
-  [[nodiscard]] Exchange& exchange() { return exchange_; }
+  [[nodiscard]] Peers& peers() { return peers_; }
   [[nodiscard]] ForcedMigrations& forced_migrations() { return forced_migrations_; }
   /// The futures that are in use on this PE, by number. A result for another one is an error.
   [[nodiscard]] FutureTable& futures() { return futures_; }
@@ -220,7 +220,7 @@ class Pe {
   PeStatistics statistics_;
   Measuring measuring_{*this};
   ForcedMigrations forced_migrations_;
-  Exchange exchange_;
+  Peers peers_;
   HostedCollections collections_{*this};
   Timers timers_{*this};
 };

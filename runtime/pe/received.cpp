@@ -1,9 +1,9 @@
 // Messages that arrive from other processes: they are unpacked where they arrive, passed to their
 // PE, and repaid once they have run.
 #include "runtime/core/check.hpp"
-#include "runtime/pe/exchange.hpp"
 #include "runtime/pe/pe.hpp"
 #include "runtime/pe/pe_action.hpp"
+#include "runtime/pe/peers.hpp"
 #include "runtime/pe/queues/outbox.hpp"
 #include "runtime/wire/messages/read_all.hpp"
 
@@ -18,7 +18,7 @@ struct Credit {
   std::uint64_t amount = 0;
 };
 void credit_arrives(Pe& pe, Credit&& credit) {
-  pe.exchange().on_repaid(credit.from, credit.amount);
+  pe.peers().on_repaid(credit.from, credit.amount);
 }
 
 /// Lets a producer on this PE continue.
@@ -26,7 +26,7 @@ struct Room {
   ProcessId process;
 };
 void room_arrives(Pe& pe, Room&& room) {
-  if (pe.exchange().outbox().go_on_one(room.process)) send_system<&room_arrives>(pe, pe.id(), room);
+  if (pe.peers().outbox().go_on_one(room.process)) send_system<&room_arrives>(pe, pe.id(), room);
 }
 
 /// `n_bytes` includes the attached parts.
@@ -50,7 +50,7 @@ Envelope* unpack(Pe& pe, PeId sender, const PackedHeader& header, Reader& body,
 
 }  // namespace
 
-void Exchange::receive(std::span<const std::byte> bytes) {
+void Peers::receive(std::span<const std::byte> bytes) {
   const RunsOn here(pe_);
   Reader read(bytes);
   const auto from = read.take<PackedFrom>();
@@ -62,8 +62,8 @@ void Exchange::receive(std::span<const std::byte> bytes) {
   }
 }
 
-Envelope* Exchange::place(std::span<const std::byte> head, std::span<const std::uint64_t> sizes,
-                          std::vector<std::span<std::byte>>& taken) {
+Envelope* Peers::place(std::span<const std::byte> head, std::span<const std::uint64_t> sizes,
+                       std::vector<std::span<std::byte>>& taken) {
   const RunsOn here(pe_);
   Reader read(head);
   const auto from = read.take<PackedFrom>();
@@ -79,12 +79,12 @@ Envelope* Exchange::place(std::span<const std::byte> head, std::span<const std::
   return message;
 }
 
-void Exchange::repay(PeId sender, std::uint32_t charge) {
+void Peers::repay(PeId sender, std::uint32_t charge) {
   if (const std::uint64_t amount = outbox_->owe(sender, charge); amount != 0)
     send_system<&credit_arrives>(pe_, sender, Credit{pe_.id(), amount});
 }
 
-void Exchange::on_repaid(PeId from, std::uint64_t amount) {
+void Peers::on_repaid(PeId from, std::uint64_t amount) {
   const ProcessId process = pe_.machine().process_of(from);
   outbox_->repaid(process, amount);
   if (outbox_->holds()) hold();

@@ -1,8 +1,8 @@
 // What a run reports while it goes on or when it cannot: what a PE runs, and the audit.
 #include "runtime/core/check.hpp"
 #include "runtime/pe/census.hpp"
+#include "runtime/pe/report/pe_watch.hpp"
 #include "runtime/pe/runtime.hpp"
-#include "runtime/watch/report/pe_watch.hpp"
 
 #include <algorithm>
 #include <fmt/core.h>

@@ -6,7 +6,7 @@
 #include "runtime/pe/census.hpp"
 #include "runtime/pe/measure/critical_path.hpp"
 #include "runtime/pe/pe_action.hpp"
-#include "runtime/watch/report/pe_watch.hpp"
+#include "runtime/pe/report/pe_watch.hpp"
 
 #include <algorithm>
 #include <array>
@@ -297,7 +297,7 @@ void Runtime::on_stopped(Pe& pe, int code) {
   send_to_each<&leave_arrives>(pe, Code{exit_code_});
   // At once: as soon as another PE of this process receives its message, it stops the process, and
   // this PE would leave with the packed messages for the other processes.
-  pe.exchange().flush();
+  pe.peers().flush();
 }
 
 void Runtime::on_leave(int code) {

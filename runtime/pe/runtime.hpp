@@ -19,7 +19,7 @@
 #include "runtime/pe/interfaces/process_service.hpp"
 #include "runtime/pe/interfaces/runtime_options.hpp"
 #include "runtime/pe/pe.hpp"
-#include "runtime/watch/report/waiting.hpp"
+#include "runtime/pe/report/waiting.hpp"
 #include "runtime/wire/machine/machine.hpp"
 
 #include <atomic>
@@ -131,11 +131,11 @@ class Runtime final : public Program {
   bool idle(PeId id) override { return pe(id).idle(); }
   void busy(PeId id) override { pe(id).busy(); }
   void receive(PeId id, std::span<const std::byte> bytes) override {
-    pe(id).exchange().receive(bytes);
+    pe(id).peers().receive(bytes);
   }
   Link* place(PeId id, std::span<const std::byte> head, std::span<const std::uint64_t> sizes,
               std::vector<std::span<std::byte>>& places) override {
-    return pe(id).exchange().place(head, sizes, places);
+    return pe(id).peers().place(head, sizes, places);
   }
   void placed(PeId id, Link* message) override;
   void drop(Link* message) override { discard(static_cast<Envelope*>(message)); }

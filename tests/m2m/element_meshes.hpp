@@ -1,8 +1,8 @@
 // Meshes of a box made of one type of element each, as the readers split them.
 #pragma once
 
+#include "m2m/io/elements/split_element.hpp"
 #include "m2m/mesh.hpp"
-#include "m2m/mesh/elements/split_element.hpp"
 
 #include <array>
 #include <cmath>

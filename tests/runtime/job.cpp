@@ -108,7 +108,7 @@ class Forgetful : public tess::Chare<Forgetful, tess::Index1> {
 void give_codes(tess::GroupProxy<Crowd> crowd, int first, int last) {
   tess::Pe& pe = tess::current_pe();
   crowd[tess::PeId{pe.n_pes() - 1}].send<&Crowd::give>(last);
-  pe.exchange().flush();
+  pe.peers().flush();
   std::this_thread::sleep_for(std::chrono::milliseconds(300));
   print_time();
   tess::exit(first);

@@ -2,7 +2,7 @@
 // TETRA, TET4 or tetrahedra, and TRI, TRI3 or TRIANGLE, in upper or lower case.
 #pragma once
 
-#include "m2m/mesh/elements/split_element.hpp"
+#include "m2m/io/elements/split_element.hpp"
 
 #include <array>
 #include <cstdint>

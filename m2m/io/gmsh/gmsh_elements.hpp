@@ -2,7 +2,7 @@
 // order of ExodusII but for the last two of a tet10.
 #pragma once
 
-#include "m2m/mesh/elements/split_element.hpp"
+#include "m2m/io/elements/split_element.hpp"
 
 #include <optional>
 #include <string_view>

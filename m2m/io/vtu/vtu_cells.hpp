@@ -1,7 +1,7 @@
 // The cell types of VTK (vtkCellType.h), for the reader of VTU files.
 #pragma once
 
-#include "m2m/mesh/elements/split_element.hpp"
+#include "m2m/io/elements/split_element.hpp"
 
 #include <cstdint>
 #include <optional>

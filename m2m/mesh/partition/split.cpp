@@ -1,6 +1,6 @@
 #include "m2m/mesh/partition/split.hpp"
 
-#include "m2m/mesh/topology/tets_of_vertices.hpp"
+#include "m2m/rows/weights/tets_of_vertices.hpp"
 #include "runtime/core/check.hpp"
 #include "runtime/core/error.hpp"
 #include "runtime/core/sort_unique.hpp"

@@ -1,9 +1,9 @@
 #include "m2m/rows/reconstruct/element_corners.hpp"
 
-#include "m2m/mesh/topology/tets_of_vertices.hpp"
 #include "m2m/rows/interpolate/locate.hpp"
 #include "m2m/rows/reconstruct/gather.hpp"
 #include "m2m/rows/reconstruct/gradient_fit.hpp"
+#include "m2m/rows/weights/tets_of_vertices.hpp"
 
 #include <algorithm>
 #include <cmath>

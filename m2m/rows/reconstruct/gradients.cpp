@@ -1,9 +1,9 @@
 #include "m2m/rows/reconstruct/gradients.hpp"
 
-#include "m2m/mesh/topology/tets_of_vertices.hpp"
 #include "m2m/rows/reconstruct/gather.hpp"
 #include "m2m/rows/reconstruct/gradient_fit.hpp"
 #include "m2m/rows/reconstruct/second_order.hpp"
+#include "m2m/rows/weights/tets_of_vertices.hpp"
 
 #include <algorithm>
 #include <numeric>

@@ -322,7 +322,7 @@ void SectionListsOf<Index>::on_multicast(SectionMulticast&& multicast, Counted c
   for (const PeId child : generation.children)
     send_to_collection<&multicast_arrives>(array_, child, multicast);
   if (!generation.children.empty())
-    array_.pe().exchange().flush();  // other processes do not wait for the local members
+    array_.pe().peers().flush();  // other processes do not wait for the local members
   deliver(multicast.section, multicast.generation, generation, multicast.call);
   ++generation.n_done;
   finish(*lists, multicast.generation);

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "runtime/core/ids.hpp"
-#include "runtime/watch/report/waiting.hpp"
+#include "runtime/pe/report/waiting.hpp"
 #include "runtime/wire/machine/machine.hpp"
 #include "runtime/wire/messages/envelope.hpp"
 

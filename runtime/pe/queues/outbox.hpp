@@ -21,7 +21,7 @@
 // credit waits for credit, and no deadlock is possible. A message that waits here counts as sent
 // and not processed, so its epochs wait for it.
 //
-// The other end is Exchange::receive and Exchange::place. An outbox belongs to one PE.
+// The other end is Peers::receive and Peers::place. An outbox belongs to one PE.
 #pragma once
 
 #include "runtime/core/ids.hpp"

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "runtime/core/ids.hpp"
-#include "runtime/watch/report/wait_reason.hpp"
+#include "runtime/pe/report/wait_reason.hpp"
 
 #include <functional>
 

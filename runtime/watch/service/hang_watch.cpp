@@ -1,7 +1,7 @@
 #include "runtime/watch/service/hang_watch.hpp"
 
+#include "runtime/pe/report/pe_watch.hpp"
 #include "runtime/pe/runtime.hpp"
-#include "runtime/watch/report/pe_watch.hpp"
 
 #include <algorithm>
 

@@ -2,8 +2,8 @@
 
 #include "runtime/core/text.hpp"
 #include "runtime/pe/census.hpp"
+#include "runtime/pe/report/pe_watch.hpp"
 #include "runtime/pe/runtime.hpp"
-#include "runtime/watch/report/pe_watch.hpp"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "runtime/watch/report/waiting.hpp"
+#include "runtime/pe/report/waiting.hpp"
 
 #include "runtime/core/text.hpp"
 

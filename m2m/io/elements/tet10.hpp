@@ -7,7 +7,7 @@
 // straight tetrahedra of split_element.hpp; Newton's method then inverts the map.
 #pragma once
 
-#include "m2m/mesh/elements/split_element.hpp"
+#include "m2m/io/elements/split_element.hpp"
 #include "m2m/rows/weights/point_rows.hpp"
 
 #include <array>

@@ -1,4 +1,4 @@
-#include "m2m/mesh/elements/tet10.hpp"
+#include "m2m/io/elements/tet10.hpp"
 
 #include "apps/kit/worst.hpp"
 #include "m2m/kuhn.hpp"

@@ -1,9 +1,9 @@
 // The texts of reports, and the comparison of an audit, without a run.
-#include "runtime/watch/report/waiting.hpp"
+#include "runtime/pe/report/waiting.hpp"
 
 #include "runtime/core/hash.hpp"
-#include "runtime/watch/report/audit.hpp"
-#include "runtime/watch/report/pe_watch.hpp"
+#include "runtime/pe/report/audit.hpp"
+#include "runtime/pe/report/pe_watch.hpp"
 #include "tests/support/catch.hpp"
 
 #include <atomic>

@@ -1,4 +1,4 @@
-#include "m2m/mesh/topology/tets_of_vertices.hpp"
+#include "m2m/rows/weights/tets_of_vertices.hpp"
 
 namespace tess::m2m {
 

@@ -11,8 +11,8 @@
 // reductions and barriers, then coroutines, epochs and queues. Long lists are shortened.
 #pragma once
 
-#include "runtime/watch/report/audit.hpp"
-#include "runtime/watch/report/wait_reason.hpp"
+#include "runtime/pe/report/audit.hpp"
+#include "runtime/pe/report/wait_reason.hpp"
 
 #include <array>
 #include <cstddef>

@@ -25,12 +25,12 @@ struct Bundle;
 struct Envelope;
 struct MessageOptions;
 
-class Exchange {
+class Peers {
  public:
-  Exchange(Pe& pe, const MessageOptions& messages);
-  Exchange(const Exchange&) = delete;
-  Exchange& operator=(const Exchange&) = delete;
-  ~Exchange();
+  Peers(Pe& pe, const MessageOptions& messages);
+  Peers(const Peers&) = delete;
+  Peers& operator=(const Peers&) = delete;
+  ~Peers();
 
   /// True for the PEs of this process.
   [[nodiscard]] bool in_process(PeId to) const {

@@ -1,4 +1,4 @@
-#include "runtime/pe/exchange.hpp"
+#include "runtime/pe/peers.hpp"
 
 #include "runtime/base/ticks.hpp"
 #include "runtime/pe/block.hpp"
@@ -22,7 +22,7 @@ constexpr std::uint32_t most_between_looks = 8;
 
 }  // namespace
 
-Exchange::Exchange(Pe& pe, const MessageOptions& messages)
+Peers::Peers(Pe& pe, const MessageOptions& messages)
     : pe_(pe),
       first_here_(pe.machine().first_pe(pe.machine().process_of(pe.id())).value),
       n_here_(pe.machine().pes_per_process()),
@@ -31,16 +31,16 @@ Exchange::Exchange(Pe& pe, const MessageOptions& messages)
       bundles_(pe.machine().takes_bundles() ? static_cast<std::size_t>(n_here_) : 0),
       outbox_(
           std::make_unique<Outbox>(pe.id(), pe.machine(), messages, pe.statistics().bytes_sent)) {}
-Exchange::~Exchange() = default;
+Peers::~Peers() = default;
 
-void Exchange::hold() {
+void Peers::hold() {
   if (holds_) return;
   holds_ = true;
   held_since_ = last_look_ = read_ticks();
   until_look_ = look_every_ = 1;
 }
 
-void Exchange::pack(Envelope* message) {
+void Peers::pack(Envelope* message) {
   try {
     outbox_->put(message);
   } catch (...) {  // serialize() of an argument threw; the message counts as sent already
@@ -49,7 +49,7 @@ void Exchange::pack(Envelope* message) {
   if (outbox_->holds()) hold();
 }
 
-void Exchange::pass(PeId to, Envelope* message, std::size_t n_bytes) {
+void Peers::pass(PeId to, Envelope* message, std::size_t n_bytes) {
   if (bundles_.empty()) {
     pe_.machine().post(pe_.id(), to, message, n_bytes, message->action->traffic);
     return;
@@ -64,7 +64,7 @@ void Exchange::pass(PeId to, Envelope* message, std::size_t n_bytes) {
   hold();
 }
 
-void Exchange::post(Bundle*& bundle, PeId to) {
+void Peers::post(Bundle*& bundle, PeId to) {
   if (bundle->n == 1) {  // posted alone; the bundle is kept for later messages
     auto* const message = static_cast<Envelope*>(bundle->messages[0]);
     bundle->n = 0;
@@ -75,17 +75,17 @@ void Exchange::post(Bundle*& bundle, PeId to) {
   }
 }
 
-std::uint64_t Exchange::before_slow() {
+std::uint64_t Peers::before_slow() {
   flush();
   return read_ticks();
 }
 
-void Exchange::slow_ran(const Action& action, std::uint64_t began) const {
+void Peers::slow_ran(const Action& action, std::uint64_t began) const {
   const bool quick = read_ticks() - began < bundle_ticks_;
   action.set_pace(quick ? Action::Pace::quick : Action::Pace::slow);
 }
 
-void Exchange::look_at_clock(const Action& action) {
+void Peers::look_at_clock(const Action& action) {
   const std::uint64_t now = read_ticks();
   if (now - last_look_ > bundle_ticks_) {
     if (look_every_ == 1) action.set_pace(Action::Pace::slow);
@@ -103,7 +103,7 @@ void Exchange::look_at_clock(const Action& action) {
   }
 }
 
-void Exchange::flush_bundles() {
+void Peers::flush_bundles() {
   for (const std::int32_t at : opened_) {
     Bundle*& bundle = bundles_[static_cast<std::size_t>(at)];
     if (bundle != nullptr && bundle->n != 0) post(bundle, PeId{first_here_ + at});
@@ -111,7 +111,7 @@ void Exchange::flush_bundles() {
   opened_.clear();
 }
 
-bool Exchange::flush() {
+bool Peers::flush() {
   if (!holds_) return false;
   holds_ = false;
   flush_bundles();
@@ -119,7 +119,7 @@ bool Exchange::flush() {
   return true;
 }
 
-void Exchange::drop_all() {
+void Peers::drop_all() {
   for (Bundle*& bundle : bundles_) {
     if (bundle == nullptr) continue;
     for (std::uint32_t i = 0; i < bundle->n; ++i)

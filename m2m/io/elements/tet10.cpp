@@ -1,4 +1,4 @@
-#include "m2m/mesh/elements/tet10.hpp"
+#include "m2m/io/elements/tet10.hpp"
 
 #include "runtime/core/check.hpp"
 

@@ -1,4 +1,4 @@
-#include "runtime/watch/report/audit.hpp"
+#include "runtime/pe/report/audit.hpp"
 
 #include "runtime/core/hash.hpp"
 #include "runtime/core/text.hpp"

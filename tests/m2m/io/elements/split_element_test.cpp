@@ -1,4 +1,4 @@
-#include "m2m/mesh/elements/split_element.hpp"
+#include "m2m/io/elements/split_element.hpp"
 
 #include "m2m/kuhn.hpp"
 #include "tests/support/catch.hpp"
