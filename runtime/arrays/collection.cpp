@@ -3,6 +3,7 @@
 #include "runtime/arrays/elements/balance_record.hpp"
 #include "runtime/arrays/elements/index_map.hpp"
 #include "runtime/arrays/sections.hpp"
+#include "runtime/base/first_few.hpp"
 #include "runtime/core/check.hpp"
 #include "runtime/core/hash.hpp"
 #include "runtime/core/text.hpp"

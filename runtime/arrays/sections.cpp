@@ -2,6 +2,7 @@
 
 #include "runtime/arrays/collection.hpp"
 #include "runtime/arrays/collection_action.hpp"
+#include "runtime/base/first_few.hpp"
 #include "runtime/core/check.hpp"
 
 #include <algorithm>

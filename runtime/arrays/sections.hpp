@@ -147,7 +147,7 @@ class Sections {
       return {of, of->current};
     return find_contributor(*of, element);
   }
-  void contributed(const Seat& seat) { seat.part->reduction.added(seat.member().next++, {}); }
+  void contributed(const Seat& seat) { seat.part->reduction.added(seat.member().next++); }
   void contribute(const Seat& seat, std::unique_ptr<Partial> value);
 
   // Elements that come and go.

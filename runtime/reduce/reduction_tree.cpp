@@ -20,7 +20,7 @@ ReductionTree::ReductionTree(ReductionHost& host, Completion& completion, PeId h
       root_(root),
       parent_(SpanningTree(here, root, n_pes).parent()),
       of_section_(of == MembersOf::section),
-      children_(SpanningTree(here, root, n_pes).children(), !of_section_) {}
+      children_(SpanningTree(here, root, n_pes), !of_section_) {}
 
 ReductionTree::~ReductionTree() = default;
 
@@ -132,20 +132,9 @@ std::uint32_t ReductionTree::postpone(std::uint32_t next, std::uint32_t created_
   return later;
 }
 
-void ReductionTree::enter(std::uint32_t next) {
-  elements_at_.add(next);
-}
-
-void ReductionTree::leave(std::uint32_t next) {
-  elements_at_.remove(next);
-}
-
 void ReductionTree::added(std::uint32_t number, const Cause& cause) {
-  Gathering& gathering = gathering_.added(completion_);
-  take(number, gathering, cause);
-  leave(number);
-  enter(number + 1);
-  if (ready(next_report_)) advance();
+  take(number, gathering_.added(completion_), cause);
+  go_on(number);
 }
 
 void ReductionTree::contribute(std::uint32_t number, EpochId epoch, std::unique_ptr<Partial> value,

@@ -89,24 +89,6 @@ class ReductionHost {
   virtual void deliver(Partial& result, EpochId epoch) = 0;
 };
 
-/// The first few of those that a tree waits for, as text: "Block[3], Block[5] and 7 more".
-class FirstFew {
- public:
-  /// `words()` is called for those that are named.
-  template <class Words>
-  void add(const Words& words) {
-    if (++n_ <= most) text_ += (n_ > 1 ? ", " : "") + words();
-  }
-  [[nodiscard]] std::string text() const {
-    return n_ <= most ? text_ : text_ + " and " + std::to_string(n_ - most) + " more";
-  }
-
- private:
-  static constexpr std::size_t most = 5;
-  std::string text_;
-  std::size_t n_ = 0;
-};
-
 /// The words of a tree in reports: "Block: reduction", and the members that have not contributed to
 /// all numbers below one.
 struct TreeWords {
@@ -152,8 +134,8 @@ class ReductionTree {
   [[nodiscard]] bool is_empty() const;
 
   /// An element with this next number is on this PE from now on, or no longer.
-  void enter(std::uint32_t next);
-  void leave(std::uint32_t next);
+  void enter(std::uint32_t next) { elements_at_.add(next); }
+  void leave(std::uint32_t next) { elements_at_.remove(next); }
 
   /// An element on this PE contributes to `number`; it was entered with `number` and is now entered
   /// with the next. The epoch waits for the delivery of the result.
@@ -172,8 +154,12 @@ class ReductionTree {
   [[nodiscard]] Partial* open_sum(std::uint32_t number, const PartialKind& kind, EpochId epoch) {
     return gathering_.open(number, kind, epoch);
   }
-  /// A contribution was added to open_sum().
+  /// A contribution was added to open_sum(). That of a section's member has no cause.
   void added(std::uint32_t number, const Cause& cause);
+  void added(std::uint32_t number) {
+    gathering_.added(completion_);
+    go_on(number);
+  }
 
   /// Attaches, reports or detaches if that is possible now; called after elements came or left.
   void advance();
@@ -205,6 +191,12 @@ class ReductionTree {
   [[nodiscard]] bool ready(std::uint32_t number) const {
     return elements_at_.empty() || elements_at_.lowest() > number;
   }
+  /// An element has contributed to `number`.
+  void go_on(std::uint32_t number) {
+    leave(number);
+    enter(number + 1);
+    if (ready(next_report_)) advance();
+  }
   void report(std::uint32_t number, Gathering&& gathered);
   void report_late(std::uint32_t number, Reported&& sum, std::uint32_t joins = 0);
   /// Attaches or detaches if the members here and the children below have changed. Returns true if
@@ -231,7 +223,7 @@ class ReductionTree {
   bool learn(std::uint32_t number, std::uint32_t led_by);
   /// Merges the cause of a contribution to `number`.
   void take(std::uint32_t number, Gathering& into, const Cause& cause);
-  /// The same for a contribution elsewhere, of which this PE learns by a message that is no report
+  /// Merges that of a contribution elsewhere, of which this PE learns by a message that is no report
   /// of a child: a new element below may wait for this knowledge, so the children are asked.
   void take(std::uint32_t number, const Cause& cause);
   /// An earlier broadcast led to `number` than was known.

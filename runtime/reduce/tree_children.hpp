@@ -3,6 +3,7 @@
 // when it attaches, until it detaches.
 #pragma once
 
+#include "runtime/base/spanning_tree.hpp"
 #include "runtime/core/algorithm.hpp"
 #include "runtime/reduce/reduction_messages.hpp"
 
@@ -13,8 +14,8 @@ namespace tess::detail {
 
 class TreeChildren {
  public:
-  TreeChildren(const std::vector<PeId>& pes, bool attached) {
-    for (const PeId pe : pes) children_.push_back(Child{pe, {}, attached});
+  TreeChildren(const SpanningTree& tree, bool attached) : tree_(tree) {
+    for (const PeId pe : tree.children()) children_.push_back(Child{pe, {}, attached});
   }
 
   /// Messages of a child arrive in any order: the newest one counts. A report says that the child is
@@ -66,12 +67,11 @@ class TreeChildren {
     bool attached = false;
   };
   [[nodiscard]] std::size_t slot_of(PeId pe) const {
-    const auto at = std::find_if(children_.begin(), children_.end(),
-                                 [pe](const Child& one) { return one.pe == pe; });
-    return static_cast<std::size_t>(at - children_.begin());
+    return static_cast<std::size_t>(tree_.slot_of(pe));
   }
 
-  std::vector<Child> children_;
+  const SpanningTree tree_;
+  std::vector<Child> children_;  // by slot
 };
 
 }  // namespace tess::detail

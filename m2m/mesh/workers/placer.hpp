@@ -9,6 +9,7 @@
 #include "m2m/mesh/partition/id_set.hpp"
 #include "m2m/mesh/partition/split.hpp"
 #include "m2m/mesh/workers/worker.hpp"
+#include "m2m/rows/weights/tets_of_vertices.hpp"
 #include "runtime/core/algorithm.hpp"
 
 #include <array>
@@ -202,9 +203,8 @@ class Placer : public Group<Placer> {
     };
     std::vector<Seen> others{};  // parts that use points found in the last layer
     std::vector<HaloTet> halo{};
-    std::optional<IdSet> own_vertices{};  // for answer_around()
-    std::vector<std::uint32_t> begin{};   // per own vertex, in `around`
-    std::vector<std::int32_t> around{};   // positions of tetrahedra
+    std::optional<IdSet> own_vertices{};     // for answer_around()
+    std::optional<TetsOfVertices> around{};  // own vertices, by rank
     std::vector<double> rows{};
   };
 

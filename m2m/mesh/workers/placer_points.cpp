@@ -220,19 +220,10 @@ void Placer::ask_around() {
 }
 
 void Placer::index_tets(Draft& part) {
-  const std::vector<Tet>& tets = part.mesh.tets;
+  std::vector<Tet> tets = part.mesh.tets;
   part.own_vertices.emplace(tets);
-  part.begin.assign(static_cast<std::size_t>(part.own_vertices->size()) + 1, 0);
-  for (const Tet& tet : tets)
-    for (const VertexId v : tet)
-      ++part.begin[static_cast<std::size_t>(part.own_vertices->rank(v)) + 1];
-  for (std::size_t i = 1; i < part.begin.size(); ++i) part.begin[i] += part.begin[i - 1];
-  part.around.resize(part.begin.back());
-  std::vector<std::uint32_t> next(part.begin.begin(), part.begin.end() - 1);
-  for (std::size_t t = 0; t < tets.size(); ++t)
-    for (const VertexId v : tets[t])
-      part.around[next[static_cast<std::size_t>(part.own_vertices->rank(v))]++] =
-          static_cast<std::int32_t>(t);
+  number_corners(tets, *part.own_vertices);
+  part.around.emplace(static_cast<std::size_t>(part.own_vertices->size()), tets);
 }
 
 void Placer::answer_around(const AroundQuery& query) {
@@ -240,9 +231,8 @@ void Placer::answer_around(const AroundQuery& query) {
   if (!asked.own_vertices) index_tets(asked);
   std::vector<std::int32_t> found;
   for (const VertexId v : query.vertices) {
-    const auto at = static_cast<std::size_t>(asked.own_vertices->rank(v));
-    found.insert(found.end(), asked.around.begin() + asked.begin[at],
-                 asked.around.begin() + asked.begin[at + 1]);
+    const auto around = (*asked.around)[asked.own_vertices->rank(v)];
+    found.insert(found.end(), around.begin(), around.end());
   }
   sort_unique(found);
   AroundAnswer answer{query.asker};

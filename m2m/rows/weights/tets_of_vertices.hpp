@@ -3,6 +3,7 @@
 
 #include "m2m/mesh_view.hpp"
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -11,7 +12,8 @@ namespace tess::m2m {
 
 class TetsOfVertices {
  public:
-  explicit TetsOfVertices(MeshView mesh);
+  explicit TetsOfVertices(const MeshView& mesh) : TetsOfVertices(mesh.points.size(), mesh.tets) {}
+  TetsOfVertices(std::size_t n_vertices, std::span<const Tet> tets);
   /// In the order of the mesh. A tetrahedron that names a vertex twice is listed twice.
   [[nodiscard]] std::span<const std::int32_t> operator[](VertexId vertex) const {
     const auto v = static_cast<std::size_t>(vertex);

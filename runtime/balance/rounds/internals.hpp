@@ -5,6 +5,7 @@
 #include "runtime/arrays/collection_action.hpp"
 #include "runtime/arrays/elements/balance_record.hpp"
 #include "runtime/arrays/elements/element.hpp"
+#include "runtime/base/first_few.hpp"
 #include "runtime/core/registry.hpp"
 #include "runtime/pe/meter.hpp"
 #include "runtime/reduce/reduction_tree.hpp"
