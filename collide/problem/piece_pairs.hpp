@@ -48,7 +48,7 @@ class PiecePairs {
   /// At most so many at a time.
   static constexpr std::size_t most = 512;
 
-  /// Of n pairs of pieces of two sets, or of one.
+  /// Finds those that count among n pairs of pieces of two sets, or of one.
   void find(const Pieces& of_x, const std::uint32_t* x, const Pieces& of_y, const std::uint32_t* y,
             std::size_t n, Touching touching) {
     const bool in_pieces = of_x.in_pieces();

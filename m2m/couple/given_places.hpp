@@ -1,6 +1,6 @@
-// Which source pieces give values to the places of a target piece. A source piece gives values to
-// some places. If the kind is conservative these are loads, and a row that only one source piece has
-// stays there. The parts of a row that several source pieces have come here: they are added, and
+// Says which source pieces give values to the places of a target piece. A source piece gives values
+// to some places. If the kind is conservative these are loads, and a row that only one source piece
+// has stays there. The parts of a row that several source pieces have come here: they are added, and
 // the row is applied here, to values that these pieces send. Both compute a load from the same
 // weights in the same order of ids.
 #pragma once

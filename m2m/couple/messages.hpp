@@ -82,7 +82,7 @@ struct NearestAnswer {
   std::vector<GlobalId> ids;
   std::vector<VertexId> vertices;  ///< in the source piece
 };
-/// Which tetrahedra overlap, how much of them, and which unknowns of the query have a row.
+/// Says which tetrahedra overlap, how much of them, and which unknowns of the query have a row.
 struct OverlapAnswer {
   std::vector<std::uint32_t> tets;  ///< positions in the query
   std::vector<std::array<double, 4>> covered;

@@ -39,7 +39,7 @@ double clamped(double value, const Donor& donor, const double* values, std::size
   return value < low ? low : value > high ? high : value;
 }
 
-/// The same place for a field in tetrahedra: rows of values in place of vertices.
+/// Names the place for a field in tetrahedra: rows of values in place of vertices.
 Donor in_tet(std::int32_t tet, const Weights& weights, Centring centring) {
   if (centring == Centring::cells) return donor_at(tet);
   return {{4 * tet, 4 * tet + 1, 4 * tet + 2, 4 * tet + 3}, weights};

@@ -10,7 +10,7 @@ struct Waits;
 
 /// What waits on this PE for something from elsewhere. Coroutines with these frames are left out.
 [[nodiscard]] Waits census(Pe& pe, std::span<void* const> except = {});
-/// The same while the run goes on: also what is about to run.
+/// Reports also what is about to run, while the run goes on.
 [[nodiscard]] Waits census_of_running(Pe& pe);
 
 }  // namespace tess::detail

@@ -52,7 +52,7 @@ class HostedCollections {
   [[nodiscard]] std::vector<std::uint32_t> take_early_joins(CollectionId id);
 
   [[nodiscard]] bool ended(CollectionId id) const { return ended_.contains(id); }
-  /// For restarts: it had ended before the checkpoint.
+  /// A restart says that it had ended before the checkpoint.
   void had_ended(CollectionId id) { ended_.add(id); }
   /// Removes a collection: it ends here, and later messages to it are dropped.
   [[nodiscard]] std::unique_ptr<HostedCollection> take_out(CollectionId id);

@@ -37,7 +37,7 @@ class Measuring {
   [[nodiscard]] Meter* meter() const { return meter_.get(); }
   /// Starts measuring.
   Meter& start_meter();
-  /// The same until stop_brief_meter(), unless start_meter() is called meanwhile.
+  /// Measures until stop_brief_meter(), or for good if start_meter() is called meanwhile.
   Meter& start_brief_meter();
   void stop_brief_meter();
   /// The record ends or leaves this PE: its meters write to it no more.

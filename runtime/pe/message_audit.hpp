@@ -21,7 +21,7 @@ class MessageAudit {
   void arrives(Envelope& message);
   [[nodiscard]] std::vector<AuditRow> rows() const { return audit_.rows(); }
 
-  /// The same message once more, by way of its bytes.
+  /// Copies the message by way of its bytes.
   [[nodiscard]] static Envelope* copy_of(Pe& pe, Envelope& message);
 
  private:

@@ -22,7 +22,7 @@ class PendingError {
   void keep(std::exception_ptr error);
   /// An exception leaves the code of an element: records the place for the report.
   void note_place();
-  /// The same for code that is of no element: `instead` says what ran.
+  /// It leaves code of no element: `instead` says what ran.
   void note_place(std::string_view instead);
   /// An exception leaves a constructor of a class: records it, with the types of its arguments, for
   /// the report.

@@ -40,7 +40,7 @@ enum class CellForm : std::uint8_t {
   limited,   ///< the same, with CornerLimit::neighbours
 };
 
-/// The same for fields in tetrahedra, with the halo that the form needs.
+/// Scatters a mesh with fields in tetrahedra, and the halo that the form needs.
 [[nodiscard]] DistributedMesh scatter_cells(const TetMesh& mesh, const std::vector<Field>& fields,
                                             std::int32_t n_parts, PartitionMethod method,
                                             CellForm form);
