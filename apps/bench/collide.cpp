@@ -13,7 +13,7 @@
 #include "apps/bench/collide/one_core.hpp"
 #include "apps/bench/collide/rows.hpp"
 #include "apps/kit/driver.hpp"
-#include "apps/kit/write_file.hpp"
+#include "apps/kit/output/write_file.hpp"
 
 #include <algorithm>
 #include <fmt/core.h>

@@ -6,7 +6,7 @@
 #include "apps/bench/calibrate/calibrate.hpp"
 #include "apps/bench/shapes/shapes.hpp"
 #include "apps/kit/driver.hpp"
-#include "apps/kit/write_file.hpp"
+#include "apps/kit/output/write_file.hpp"
 #include "runtime/command_line.hpp"
 
 #include <algorithm>

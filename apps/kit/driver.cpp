@@ -1,8 +1,8 @@
 #include "apps/kit/driver.hpp"
 
-#include "apps/kit/chart.hpp"
+#include "apps/kit/output/chart.hpp"
+#include "apps/kit/output/write_file.hpp"
 #include "apps/kit/version.hpp"
-#include "apps/kit/write_file.hpp"
 #include "runtime/core/error.hpp"
 #include "runtime/wire/machine/machine.hpp"
 

@@ -20,8 +20,8 @@
 // `results` has an object per run, case or row of a study. Members that only one program has follow.
 #pragma once
 
-#include "apps/kit/file_names.hpp"
-#include "apps/kit/json.hpp"
+#include "apps/kit/output/file_names.hpp"
+#include "apps/kit/output/json.hpp"
 #include "apps/kit/progress.hpp"
 #include "runtime/command_line.hpp"
 

@@ -1,7 +1,7 @@
 #include "apps/kit/rows.hpp"
 
-#include "apps/kit/fit.hpp"
-#include "apps/kit/quoting.hpp"
+#include "apps/kit/output/fit.hpp"
+#include "apps/kit/output/quoting.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -10,8 +10,8 @@
 //     driver.write(report.json(rows));
 #pragma once
 
-#include "apps/kit/chart.hpp"
-#include "apps/kit/json.hpp"
+#include "apps/kit/output/chart.hpp"
+#include "apps/kit/output/json.hpp"
 
 #include <cstdint>
 #include <optional>

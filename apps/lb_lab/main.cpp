@@ -2,7 +2,7 @@
 // and their cost. Runs workloads with a known answer under every given strategy and cut, or
 // strategies on saved snapshots.
 #include "apps/kit/driver.hpp"
-#include "apps/kit/write_file.hpp"
+#include "apps/kit/output/write_file.hpp"
 #include "apps/kit/wrong_answer.hpp"
 #include "apps/lb_lab/output/replay.hpp"
 #include "apps/lb_lab/output/report.hpp"

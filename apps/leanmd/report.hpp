@@ -1,7 +1,7 @@
 // What the program prints and writes about one simulation.
 #pragma once
 
-#include "apps/kit/json.hpp"
+#include "apps/kit/output/json.hpp"
 #include "apps/leanmd/simulation.hpp"
 
 #include <string>

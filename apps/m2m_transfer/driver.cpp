@@ -1,6 +1,6 @@
 #include "apps/m2m_transfer/driver.hpp"
 
-#include "apps/kit/write_file.hpp"
+#include "apps/kit/output/write_file.hpp"
 #include "apps/m2m_transfer/options.hpp"
 #include "apps/m2m_transfer/output/transfer.hpp"
 #include "apps/m2m_transfer/result_format.hpp"

@@ -1,7 +1,7 @@
 #include "apps/m2m_transfer/file_fields.hpp"
 
+#include "apps/kit/output/write_file.hpp"
 #include "apps/kit/rows.hpp"
-#include "apps/kit/write_file.hpp"
 #include "apps/m2m_transfer/output/found.hpp"
 #include "apps/m2m_transfer/result_format.hpp"
 #include "m2m/cell_transfer.hpp"

@@ -4,7 +4,7 @@
 // application.
 #pragma once
 
-#include "apps/kit/json.hpp"
+#include "apps/kit/output/json.hpp"
 #include "apps/kit/progress.hpp"
 #include "apps/m2m_transfer/input/problem.hpp"
 #include "apps/m2m_transfer/names.hpp"

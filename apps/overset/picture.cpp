@@ -1,6 +1,6 @@
 #include "apps/overset/picture.hpp"
 
-#include "apps/kit/canvas.hpp"
+#include "apps/kit/output/canvas.hpp"
 
 #include <algorithm>
 

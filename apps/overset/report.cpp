@@ -1,6 +1,6 @@
 #include "apps/overset/report.hpp"
 
-#include "apps/kit/write_file.hpp"
+#include "apps/kit/output/write_file.hpp"
 #include "apps/overset/picture.hpp"
 #include "m2m/write_exodus.hpp"
 

@@ -1,6 +1,6 @@
 // task_bench: the task graphs of Task Bench (Slaughter et al., SC20) on chare arrays. It measures
 // how small tasks may be before the runtime costs as much as they do.
-#include "apps/kit/write_file.hpp"
+#include "apps/kit/output/write_file.hpp"
 #include "apps/task_bench/report.hpp"
 
 namespace task_bench {

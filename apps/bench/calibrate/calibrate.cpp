@@ -1,7 +1,7 @@
 #include "apps/bench/calibrate/calibrate.hpp"
 
 #include "apps/bench/calibrate/fit.hpp"
-#include "apps/kit/write_file.hpp"
+#include "apps/kit/output/write_file.hpp"
 #include "runtime/core/error.hpp"
 #include "runtime/wire/machine/simulated.hpp"
 

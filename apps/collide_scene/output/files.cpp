@@ -1,6 +1,6 @@
 #include "apps/collide_scene/output/files.hpp"
 
-#include "apps/kit/write_file.hpp"
+#include "apps/kit/output/write_file.hpp"
 
 #include <filesystem>
 

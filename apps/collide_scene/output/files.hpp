@@ -3,7 +3,7 @@
 
 #include "apps/collide_scene/run/result.hpp"
 #include "apps/collide_scene/scenes/scene.hpp"
-#include "apps/kit/file_names.hpp"
+#include "apps/kit/output/file_names.hpp"
 
 #include <span>
 #include <string>

@@ -1,6 +1,6 @@
 #include "apps/collide_scene/output/files.hpp"
 #include "apps/collide_scene/output/view.hpp"
-#include "apps/kit/canvas.hpp"
+#include "apps/kit/output/canvas.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,7 @@
 
 #include "apps/collide_scene/options.hpp"
 #include "apps/collide_scene/run/result.hpp"
-#include "apps/kit/json.hpp"
+#include "apps/kit/output/json.hpp"
 
 #include <optional>
 #include <string>

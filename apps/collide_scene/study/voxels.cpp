@@ -1,7 +1,7 @@
 #include "apps/collide_scene/study/voxels.hpp"
 
 #include "apps/collide_scene/run/serial.hpp"
-#include "apps/kit/write_file.hpp"
+#include "apps/kit/output/write_file.hpp"
 #include "runtime/core/error.hpp"
 
 #include <algorithm>

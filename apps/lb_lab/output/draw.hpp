@@ -2,8 +2,8 @@
 // of PEs before and after the first rounds.
 #pragma once
 
-#include "apps/kit/chart.hpp"
-#include "apps/kit/timeline.hpp"
+#include "apps/kit/output/chart.hpp"
+#include "apps/kit/output/timeline.hpp"
 #include "apps/lb_lab/run/experiment.hpp"
 #include "apps/lb_lab/run/sweep_rows.hpp"
 

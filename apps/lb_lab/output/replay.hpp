@@ -1,7 +1,7 @@
 // Strategies on snapshots from files: the moves of each, on any number of PEs, without a run.
 #pragma once
 
-#include "apps/kit/json.hpp"
+#include "apps/kit/output/json.hpp"
 #include "apps/lb_lab/run/settings.hpp"
 
 #include <string>

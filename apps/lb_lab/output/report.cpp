@@ -1,6 +1,6 @@
 #include "apps/lb_lab/output/report.hpp"
 
-#include "apps/kit/write_file.hpp"
+#include "apps/kit/output/write_file.hpp"
 #include "apps/lb_lab/run/kind.hpp"
 #include "runtime/balance/strategy.hpp"
 #include "runtime/run.hpp"

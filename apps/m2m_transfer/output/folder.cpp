@@ -1,6 +1,6 @@
 #include "apps/m2m_transfer/output/folder.hpp"
 
-#include "apps/kit/write_file.hpp"
+#include "apps/kit/output/write_file.hpp"
 
 namespace m2m_transfer {
 

@@ -2,8 +2,8 @@
 // CSV and JSON, and pictures.
 #pragma once
 
-#include "apps/kit/chart.hpp"
 #include "apps/kit/driver.hpp"
+#include "apps/kit/output/chart.hpp"
 
 #include <string>
 #include <vector>

@@ -2,7 +2,7 @@
 // elements of the files, in reports.
 #pragma once
 
-#include "apps/kit/json.hpp"
+#include "apps/kit/output/json.hpp"
 #include "apps/m2m_transfer/report.hpp"
 #include "m2m/worst_places.hpp"
 

@@ -1,4 +1,4 @@
-#include "apps/kit/canvas.hpp"
+#include "apps/kit/output/canvas.hpp"
 #include "apps/m2m_transfer/output/transfer.hpp"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #include "apps/particles/output/files.hpp"
 
-#include "apps/kit/write_file.hpp"
+#include "apps/kit/output/write_file.hpp"
 #include "apps/particles/study/study.hpp"
 #include "collide/dn_field/field_file.hpp"
 

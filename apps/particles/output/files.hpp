@@ -2,7 +2,7 @@
 // before the run begins, since a run is long. Process 0 writes, all processes check.
 #pragma once
 
-#include "apps/kit/file_names.hpp"
+#include "apps/kit/output/file_names.hpp"
 #include "apps/particles/options.hpp"
 #include "apps/particles/scene/scene.hpp"
 #include "apps/particles/simulation/simulate.hpp"

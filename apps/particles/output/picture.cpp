@@ -1,6 +1,6 @@
-#include "apps/kit/canvas.hpp"
-#include "apps/kit/contour.hpp"
-#include "apps/kit/ticks.hpp"
+#include "apps/kit/output/canvas.hpp"
+#include "apps/kit/output/contour.hpp"
+#include "apps/kit/output/ticks.hpp"
 #include "apps/particles/output/files.hpp"
 #include "collide/dn_field/compressed.hpp"
 

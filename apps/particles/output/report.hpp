@@ -1,7 +1,7 @@
 // Reports of a run: what it will use, its table, and its object in the JSON file.
 #pragma once
 
-#include "apps/kit/json.hpp"
+#include "apps/kit/output/json.hpp"
 #include "apps/particles/options.hpp"
 #include "apps/particles/scene/scene.hpp"
 #include "apps/particles/simulation/simulate.hpp"

@@ -1,5 +1,5 @@
 // The files that a run writes: pictures and snapshots.
-#include "apps/kit/contour.hpp"
+#include "apps/kit/output/contour.hpp"
 #include "apps/particles/output/files.hpp"
 #include "tests/apps/particles/run_scene.hpp"
 #include "tests/support/scratch.hpp"

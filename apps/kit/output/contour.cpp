@@ -1,4 +1,4 @@
-#include "apps/kit/contour.hpp"
+#include "apps/kit/output/contour.hpp"
 
 #include <array>
 #include <cmath>

@@ -6,7 +6,7 @@
 //     kit::write_file("a.svg", canvas.svg());
 #pragma once
 
-#include "apps/kit/chart.hpp"
+#include "apps/kit/output/chart.hpp"
 
 #include <array>
 #include <span>

@@ -7,7 +7,7 @@
 //     o───o───o
 #pragma once
 
-#include "apps/kit/chart.hpp"
+#include "apps/kit/output/chart.hpp"
 
 #include <functional>
 #include <vector>

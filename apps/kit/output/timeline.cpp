@@ -1,9 +1,9 @@
-#include "apps/kit/timeline.hpp"
+#include "apps/kit/output/timeline.hpp"
 
-#include "apps/kit/canvas.hpp"
-#include "apps/kit/quoting.hpp"
-#include "apps/kit/ticks.hpp"
-#include "apps/kit/write_file.hpp"
+#include "apps/kit/output/canvas.hpp"
+#include "apps/kit/output/quoting.hpp"
+#include "apps/kit/output/ticks.hpp"
+#include "apps/kit/output/write_file.hpp"
 #include "runtime/core/error.hpp"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
-#include "apps/kit/canvas.hpp"
+#include "apps/kit/output/canvas.hpp"
 
-#include "apps/kit/quoting.hpp"
+#include "apps/kit/output/quoting.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "apps/kit/fit.hpp"
+#include "apps/kit/output/fit.hpp"
 
 #include "tests/support/catch.hpp"
 

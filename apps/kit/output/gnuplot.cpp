@@ -1,4 +1,4 @@
-#include "apps/kit/gnuplot.hpp"
+#include "apps/kit/output/gnuplot.hpp"
 
 #include "runtime/core/error.hpp"
 

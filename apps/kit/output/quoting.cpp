@@ -1,4 +1,4 @@
-#include "apps/kit/quoting.hpp"
+#include "apps/kit/output/quoting.hpp"
 
 namespace kit {
 

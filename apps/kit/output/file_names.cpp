@@ -1,6 +1,6 @@
-#include "apps/kit/file_names.hpp"
+#include "apps/kit/output/file_names.hpp"
 
-#include "apps/kit/write_file.hpp"
+#include "apps/kit/output/write_file.hpp"
 #include "runtime/core/error.hpp"
 
 namespace kit {

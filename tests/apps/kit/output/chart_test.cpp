@@ -1,11 +1,11 @@
 // Reads back the files of the plot library: the CSV has the data bit for bit; the SVG is
 // well-formed and has a curve per series, for any name of a series.
-#include "apps/kit/chart.hpp"
+#include "apps/kit/output/chart.hpp"
 
-#include "apps/kit/file_names.hpp"
-#include "apps/kit/quoting.hpp"
-#include "apps/kit/timeline.hpp"
-#include "apps/kit/write_file.hpp"
+#include "apps/kit/output/file_names.hpp"
+#include "apps/kit/output/quoting.hpp"
+#include "apps/kit/output/timeline.hpp"
+#include "apps/kit/output/write_file.hpp"
 #include "tests/apps/xml.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/scratch.hpp"

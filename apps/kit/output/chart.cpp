@@ -1,8 +1,8 @@
-#include "apps/kit/chart.hpp"
+#include "apps/kit/output/chart.hpp"
 
-#include "apps/kit/gnuplot.hpp"
-#include "apps/kit/quoting.hpp"
-#include "apps/kit/write_file.hpp"
+#include "apps/kit/output/gnuplot.hpp"
+#include "apps/kit/output/quoting.hpp"
+#include "apps/kit/output/write_file.hpp"
 #include "runtime/core/error.hpp"
 
 #include <algorithm>

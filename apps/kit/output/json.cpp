@@ -1,4 +1,4 @@
-#include "apps/kit/json.hpp"
+#include "apps/kit/output/json.hpp"
 
 #include "runtime/core/check.hpp"
 

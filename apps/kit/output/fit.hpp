@@ -1,7 +1,7 @@
 // The power law of some points: the order of an error.
 #pragma once
 
-#include "apps/kit/chart.hpp"
+#include "apps/kit/output/chart.hpp"
 
 #include <optional>
 #include <vector>

@@ -1,4 +1,4 @@
-#include "apps/kit/write_file.hpp"
+#include "apps/kit/output/write_file.hpp"
 
 #include "runtime/core/error.hpp"
 

@@ -1,4 +1,4 @@
-#include "apps/kit/canvas.hpp"
+#include "apps/kit/output/canvas.hpp"
 
 #include "tests/apps/xml.hpp"
 #include "tests/support/catch.hpp"
