@@ -83,6 +83,9 @@ struct TetMesh {
   /// Gives each tetrahedron its element among all with a volume, in the order of the file. It is
   /// empty if all elements are tetrahedra.
   std::vector<GlobalId> element_of_tet{};
+  /// 3: the cells are tetrahedra. A wall or a plane mesh has 2: its cells are triangles, which
+  /// repeat their last vertex (a, b, c, c). A line has 1: its cells are edges (a, b, b, b).
+  std::int32_t dimension = 3;
 
   [[nodiscard]] std::size_t n_points() const noexcept { return points.size(); }
   [[nodiscard]] std::size_t n_tets() const noexcept { return tets.size(); }

@@ -23,6 +23,7 @@ struct MeshView {
   /// The first tetrahedra are the part's own. The others are a halo, for recovered gradients: they
   /// are also in other parts. -1: all are its own.
   std::int64_t n_own_tets = -1;
+  std::int32_t dimension = 3;  ///< of its cells: TetMesh::dimension
 
   [[nodiscard]] std::span<const Point> owned() const {
     return points.first(static_cast<std::size_t>(n_owned));
