@@ -22,10 +22,12 @@
 //       }
 //
 // A search finds the donors of every target point, once; apply() moves a field, any number of
-// times. Search again if a mesh moves or changes, and if pieces are inserted or destroyed: before
-// that, apply() ends the job. Values travel from piece to piece; no PE collects them. Any
-// number of couplings may exist and be in flight. A piece may be source and target of several. The
-// arrays have one to three dimensions, dense or sparse.
+// times. Search again after every motion: nothing notices an old search, and values come from the
+// old donors. Search also if pieces are inserted or destroyed, or have other numbers of points or
+// tetrahedra: apply() ends the job if a piece is new, a source piece is gone, or a number differs.
+// Values travel from piece to piece; no PE collects them. Any number of couplings may exist and be
+// in flight. A piece may be source and target of several. The arrays have one to three dimensions,
+// dense or sparse.
 //
 // apply() is a broadcast to the source pieces in an epoch. Pieces can also start on their own,
 // without the main coroutine: a source piece calls its m2m_give() when its values are ready, and a

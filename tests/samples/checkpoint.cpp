@@ -25,10 +25,6 @@ struct State {
   tess::ArrayProxy<Cell> cells;
   int step = 0;
   int total = 0;
-  template <class Ar>
-  void serialize(Ar& ar) {
-    ar(cells, step, total);
-  }
 };
 
 tess::Task relax(std::string folder, bool restarts, int last, int& result) {

@@ -13,19 +13,25 @@ namespace {
 /// Consecutive bands of equal load, in the order of the first coordinate.
 tess::balance::Assignment bands(const tess::balance::Snapshot& snapshot) {
   const auto& elements = snapshot.elements;
+  double known = 0, n_known = 0;
+  for (const tess::balance::Load& load : elements.load) {
+    known += load.seconds_or(0);
+    n_known += load.is_known() ? 1 : 0;
+  }
+  if (known == 0 || elements.position.empty()) return elements.pe;  // all stay
+  const double mean = known / n_known;
+  const double all = mean * static_cast<double>(elements.size());
   std::vector<std::size_t> order(elements.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::ranges::sort(order, {}, [&](std::size_t i) { return elements.position[i]; });
-  const auto load = [&](std::size_t i) { return elements.load[i].seconds_or(0); };
-  double all = 0;
-  for (const std::size_t i : order) all += load(i);
   tess::balance::Assignment result(elements.size());
   double before = 0;
   for (const std::size_t i : order) {
-    const double middle = (before + load(i) / 2) / all;  // 0 … 1
-    before += load(i);
-    result[i] = tess::balance::pe_at(
-        static_cast<std::size_t>(middle * static_cast<double>(snapshot.pes.size())));
+    const double load = elements.load[i].seconds_or(mean);
+    const double middle = (before + load / 2) / all;  // 0 … 1, but for rounding
+    before += load;
+    const auto pe = static_cast<std::size_t>(middle * static_cast<double>(snapshot.pes.size()));
+    result[i] = tess::balance::pe_at(std::min(pe, snapshot.pes.size() - 1));
   }
   return result;
 }
@@ -70,4 +76,15 @@ TEST_CASE("a user's strategy runs on saved snapshots with the rules of a run", "
   CHECK(placed[3] == tess::PeId{0});
   CHECK(placed[4] == tess::PeId{1});
   CHECK(placed[12] == tess::PeId{0});
+}
+
+TEST_CASE("a user's strategy stands unknown loads and snapshots without positions", "[balance]") {
+  tess::balance::Snapshot s = line();
+  s.elements.load[0] = tess::balance::Load::unknown();  // the last one in the order
+  CHECK(bands(s)[0] == tess::PeId{1});
+  s.elements.load.assign(16, tess::balance::Load::unknown());
+  CHECK(bands(s) == s.elements.pe);
+  s = line();
+  s.elements.position.clear();
+  CHECK(bands(s) == s.elements.pe);
 }
