@@ -42,6 +42,9 @@
 // the cell, or all cells around the point, `snapped` if it covers them in part, otherwise
 // `outside`.
 //
+// A coupling can be a member of the state of a checkpoint. After the restart, on any number of PEs,
+// it applies without a search, with the bits of the run that was not interrupted.
+//
 // The result depends only on the meshes and the fields: not on the number of PEs or pieces, the
 // voxels, or the order of messages.
 #pragma once
@@ -81,7 +84,7 @@ struct CouplingOptions {
   Centring source_values = Centring::nodes;
   Centring target_values = Centring::nodes;
   /// Called with the name of each phase ("broad", "narrow") when it starts; may be null. It outlives
-  /// the coupling.
+  /// the coupling; after a restart it is null.
   const std::function<void(const char*)>* on_phase = nullptr;
 };
 static_assert(std::is_trivially_destructible_v<CouplingOptions>,
@@ -102,7 +105,7 @@ struct CouplingSetup;
 struct LedgerPage;
 
 /// A coupling between arrays of any class: what does not depend on that. A handle: it can be
-/// copied.
+/// copied, and saved.
 class AnyCoupling {
  public:
   AnyCoupling();
@@ -126,6 +129,10 @@ class AnyCoupling {
   /// epoch includes this. No search and no application of it is under way. Arrays of pieces are
   /// destroyed in a later epoch.
   void destroy();
+
+  /// For checkpoints. CouplingOptions::on_phase is not saved.
+  template <class Ar>
+  void serialize(Ar& ar);
 
  protected:
   AnyCoupling(PieceArray source, PieceArray target, CouplingOptions options);

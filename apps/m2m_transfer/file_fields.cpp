@@ -135,6 +135,51 @@ struct FieldsOfSteps {
   }
 };
 
+/// The motions of the source, and the vectors that turn with it.
+class SourceMotion {
+ public:
+  SourceMotion(const FileFieldsRequest& request, const TetMesh& source)
+      : vectors_(split_names(request.vectors)) {
+    const std::vector<std::string> fields = split_names(request.fields);
+    for (const std::string& name : vectors_)
+      if (std::ranges::find(fields, name) == fields.end())
+        fail(ErrorCode::bad_argument, "--vector ", name, " is no field of --fields; name it there");
+    for (const std::string& text : request.moves) {
+      each_.push_back(parse_motion(text, {request.source, request.target}, 1));
+      if (each_.back().mesh != 0)
+        fail(
+            ErrorCode::bad_argument, "--move: '", text,
+            "' moves the target, which stays with fields of files; move the source: A:rotate(…) or "
+            "A:translate(…)");
+      set_centre(each_.back(), bounds(source));
+    }
+  }
+  [[nodiscard]] bool is_none() const { return each_.empty(); }
+  void move(TetMesh& source) {
+    for (const StepMotion& step : std::vector(each_)) {
+      const RigidMotion& motion = made_.emplace_back(step.motion);
+      move_points(source.points, motion);
+      move_centres(each_, motion);
+    }
+  }
+  /// Turns the vectors among the fields into the frame of the target.
+  void turn(std::vector<Field>& fields) const {
+    for (Field& field : fields) {
+      if (std::ranges::find(vectors_, field.name) == vectors_.end()) continue;
+      if (field.n_components != 3)
+        fail(ErrorCode::bad_argument, "--vector ", field.name, ": the field has ",
+             field.n_components, field.n_components == 1 ? " component" : " components",
+             ", and a vector has 3; leave it out");
+      for (const RigidMotion& motion : made_) turn_vectors(field.values, motion);
+    }
+  }
+
+ private:
+  std::vector<std::string> vectors_;
+  std::vector<StepMotion> each_;  // before every step but the first
+  std::vector<RigidMotion> made_;
+};
+
 struct Batch {
   std::vector<std::size_t> steps{};
   FieldsOfSteps vertices{}, cells{};
@@ -273,8 +318,9 @@ void check_options(const FileFieldsRequest& request) {
          ": fields of files are gathered on one process; give a file that ends in .exo or .vtu");
 }
 
-/// The next steps, as many as are moved together; `next` is a position in fields.steps().
-Batch read_batch(const SourceFields& fields, std::size_t& next) {
+/// The next steps, as many as are moved together, with at most so many components unless it is one;
+/// `next` is a position in fields.steps().
+Batch read_batch(const SourceFields& fields, std::size_t most_components, std::size_t& next) {
   Batch batch;
   std::size_t n_components = 0;
   do {
@@ -283,7 +329,7 @@ Batch read_batch(const SourceFields& fields, std::size_t& next) {
     const std::size_t each = batch.vertices.add(fields.at(step, FieldPlace::vertices)) +
                              batch.cells.add(fields.at(step, FieldPlace::tets));
     n_components += each;
-    if (n_components + each > batch_components) break;
+    if (n_components + each > most_components) break;
   } while (next < fields.steps().size());
   return batch;
 }
@@ -338,7 +384,13 @@ TaskOf<FileFieldsReport> move_file_fields(const FileFieldsRequest& request,
   report.source_elements.repeated = repeated_text(run.source);
   if (request.source == request.target)
     report.source_elements.coincident = coincident_text(run.source);
-  const SourceFields fields(request, run.source);
+  SourceMotion motion(request, run.source);
+  if (motion.is_none() && request.steps > 1)
+    fail(ErrorCode::bad_argument, "--steps ", request.steps,
+         " applies fields of files once: add --move A:…, or leave it out");
+  // Formulas among the fields move with the mesh.
+  const TetMesh at_start = motion.is_none() ? TetMesh{} : run.source;
+  const SourceFields fields(request, motion.is_none() ? run.source : at_start);
   if (is_vtu(request.out) && fields.steps().size() > 1)
     fail(ErrorCode::bad_argument, "--out ", request.out, ": VTU holds one step, and there are ",
          fields.steps().size(), "; give a file that ends in .exo, or one --step");
@@ -348,8 +400,12 @@ TaskOf<FileFieldsReport> move_file_fields(const FileFieldsRequest& request,
          "or --weights and --from-weights");
   if (!request.from_weights.empty()) read_matrix(run, report);
   ResultFile out(request.out, run.target);
+  for (int step = 1; step < request.steps; ++step) motion.move(run.source);
   for (std::size_t next = 0; next < fields.steps().size();) {
-    const Batch batch = read_batch(fields, next);
+    if (next > 0) motion.move(run.source);
+    Batch batch = read_batch(fields, motion.is_none() ? batch_components : 0, next);
+    motion.turn(batch.vertices.fields);
+    motion.turn(batch.cells.fields);
     if (report.fields.empty()) name_fields(batch, report);
     std::vector<Field> values = start_values(batch.vertices.fields, run.target.n_points());
     if (!request.from_weights.empty()) {

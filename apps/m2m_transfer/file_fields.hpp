@@ -24,10 +24,11 @@ namespace m2m_transfer {
 /// The options, as on the command line. `fields`: at vertices or in elements of the source file, or
 /// formulas; each may list several.
 struct FileFieldsRequest : Request {
-  std::string step{};          ///< a number, "all", or empty: the last one
-  std::string weights{};       ///< file to write them to
-  std::string from_weights{};  ///< file to read them from, in place of a search
-  std::string out{};           ///< ExodusII with all steps, or .vtu with one
+  std::string step{};                  ///< a number, "all", or empty: the last one
+  std::string weights{};               ///< file to write them to
+  std::string from_weights{};          ///< file to read them from, in place of a search
+  std::string out{};                   ///< ExodusII with all steps, or .vtu with one
+  std::vector<std::string> vectors{};  ///< fields that turn with the source; each may list several
 };
 
 struct MovedStep {

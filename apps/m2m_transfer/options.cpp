@@ -61,16 +61,22 @@ void add_transfer(kit::Driver& driver, Options& options) {
   driver.option("--tolerance LENGTH", request.tolerance,
                 "vertices outside the source but nearer than this snap to it");
   driver.flag("--clamp", request.clamp, "keep values within those of the donor's vertices");
-  driver.in(runs);
+  driver.in(runs | Mode::files);
   driver
       .option("--steps", request.steps,
               "applications of all pairs, with the donors of one search; the time of the fastest "
-              "counts")
+              "counts. With fields of files: the steps of --move up to the first one moved")
       .between(1, 1000000);
   driver.option("--move MOTION", request.moves,
                 "move a mesh before every step but the first, and search again: "
                 "'B:rotate(0,0,1,5deg)' about its middle, 'B:rotate(0,0,1,5deg,0,0,0)' about a "
                 "point, or 'B:translate(0.1,0,0)'; repeat for several");
+  driver.in(Mode::files);
+  driver.option(
+      "--vector NAME", request.vectors,
+      "a field of three components in the frame of SOURCE, such as v of v_x, v_y and v_z: "
+      "it turns with the rotations of --move A:…; repeat for several");
+  driver.enters("--vector", Mode::files);
   driver.in(file_modes);
   driver.option("--step N|all", request.step,
                 "step of the fields that the source file has, from 0 on, or all (default: the "
@@ -177,7 +183,11 @@ void read_study(Options& options) {
 void check_values(const kit::Driver& driver, const Options& options) {
   const Request& request = options.request;
   driver.refuse_both("--chares", "--per-pe");
-  if (request.steps == 1) driver.line().refuse_without("--steps above 1", {"--move"});
+  driver.refuse_both("--steps", "--weights");  // these are of one place
+  driver.refuse_both("--move", "--weights");
+  if (request.moves.empty()) driver.line().refuse_without("--move A:rotate(…)", {"--vector"});
+  if (request.steps == 1 && options.request.step != "all")
+    driver.line().refuse_without("--steps above 1", {"--move"});
   if (options.policies.size() > 1 && driver.mode() != Mode::study)
     fail(ErrorCode::bad_argument, "--policy is given more than once; give it once, or add --study");
   std::set<std::string> names;

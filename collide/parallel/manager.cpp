@@ -2,6 +2,7 @@
 
 #include "collide/parallel/pair_search.hpp"
 #include "collide/parallel/voxel_home.hpp"
+#include "runtime/core/error.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -10,6 +11,13 @@
 #include <utility>
 
 namespace tess::collide {
+
+void refuse_submitted(std::size_t n) {
+  if (n != 0)
+    fail(ErrorCode::bad_value, n,
+         " objects were submitted to a collider that has not run since: run() it before the "
+         "checkpoint");
+}
 
 ObjectList& Manager::pending() {
   if (pending_ == nullptr) pending_ = pool_.take();

@@ -35,8 +35,12 @@
 
 namespace tess::collide {
 
+/// Throws Error unless n is 0: a checkpoint saves no objects that wait for the next collision.
+void refuse_submitted(std::size_t n);
+
 class Manager : public Group<Manager> {
  public:
+  Manager() = default;  ///< for restarts
   explicit Manager(ArrayProxy<Voxel> voxels) : voxels_(voxels) {}
 
   /// Accept objects of a client on this PE. They throw Error with the object if a box is not valid,
@@ -86,6 +90,15 @@ class Manager : public Group<Manager> {
   [[nodiscard]] const CollisionStatistics& last() const { return last_; }
   void report_last(const Callback<CollisionStatistics>& target) { contribute(sum, last_, target); }
 
+  /// For checkpoints, between two collisions. Throws Error (bad_value) if objects were submitted for
+  /// the next one.
+  template <class Ar>
+  void serialize(Ar& ar) {
+    refuse_submitted(pending_ == nullptr ? 0 : pending_->objects.size());
+    ar(voxels_, last_);
+  }
+  void absorb(Manager&& other) { last_ = last_ + other.last_; }
+
  private:
   /// A collision, as its sender and as the home of voxels.
   struct Round {
@@ -113,7 +126,7 @@ class Manager : public Group<Manager> {
   /// begin at `begin`.
   void deliver_here(const Round& r, std::size_t first, std::uint32_t begin);
 
-  const ArrayProxy<Voxel> voxels_;
+  ArrayProxy<Voxel> voxels_;
   DeliveryPool pool_;
   std::shared_ptr<Delivery> pending_;      // what is submitted for the next collision
   std::map<std::uint64_t, Round> rounds_;  // by step

@@ -1,7 +1,6 @@
 #include "m2m/coupling.hpp"
 
 #include "m2m/couple/messages.hpp"
-#include "m2m/couple/turns.hpp"
 #include "runtime/core/error.hpp"
 
 #include <algorithm>
@@ -94,7 +93,6 @@ struct AnyCoupling::State {
   CouplingOptions options;
   CouplingSetup setup{};
   UnderWay under_way{};
-  std::shared_ptr<Turns> turns{};  ///< since the first search
 
   void enter(const char* phase) const {
     if (options.on_phase != nullptr) (*options.on_phase)(phase);
@@ -129,7 +127,6 @@ struct AnyCoupling::State {
     if (setup.has_projection()) setup.directory = create<PointDirectory>(each_pe);
     // Each coupling has its own collider.
     setup.id = CouplingId{setup.collider.voxels.id().value};
-    turns = std::make_shared<Turns>();
   }
   [[nodiscard]] std::vector<std::byte> target_bytes() const {
     return to_bytes(std::tuple(target, setup.id));
@@ -152,6 +149,16 @@ AnyCoupling::AnyCoupling(PieceArray source, PieceArray target, CouplingOptions o
     given.policy = Nearest{};
   if (given.kind == TransferKind::second_order && given.clamp) given.kind = TransferKind::limited;
 }
+
+template <class Ar>
+void AnyCoupling::serialize(Ar& ar) {
+  State& state = *state_;
+  CouplingOptions& options = state.options;
+  ar(state.source, state.target, state.setup, options.voxel_size, options.policy, options.kind,
+     options.tolerance, options.clamp, options.source_values, options.target_values);
+}
+template void AnyCoupling::serialize(Reader&);
+template void AnyCoupling::serialize(Writer&);
 
 CouplingId AnyCoupling::id() const {
   return state_->setup.id;
@@ -247,7 +254,8 @@ Task AnyCoupling::apply(detail::Giver give, detail::Taker take,
   TESS_CHECK(state.under_way.n_searches == 0,
              "a coupling is applied while a search of it is under way: co_await that first");
   const OneUnderWay one(state.under_way.n_applications);
-  const std::shared_ptr<Turns> turns = state.turns;
+  state.require_usable("applied");
+  const std::shared_ptr<Turns> turns = setup.ledger.local().turns();
   co_await turns->take(take->channel);
   std::exception_ptr thrown;  // the next one has its turn all the same
   try {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "collide/collider.hpp"
+#include "m2m/couple/turns.hpp"
 #include "m2m/coupling_id.hpp"
 #include "m2m/mesh.hpp"
 #include "m2m/tally.hpp"
@@ -10,6 +11,7 @@
 #include "runtime/runtime.hpp"
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -58,13 +60,30 @@ class Ledger : public Group<Ledger> {
   void add_alone() { ++page_.n_alone; }
 
   /// Entry method: a search uses the source pieces that are there now.
-  void keep_pieces(CollectionId source) { n_destroyed_ = destroyed_here(source).first; }
+  void keep_pieces(CollectionId source) {
+    source_ = source;
+    n_destroyed_ = destroyed_here(source).first;
+    lost_.clear();
+  }
   /// Ends the job if one of them was destroyed on this PE: a target piece would lack its values.
   void require_pieces(CouplingId coupling, CollectionId source) {
-    const auto [n, last] = destroyed_here(source);
-    TESS_CHECK(n == n_destroyed_, last, ", a source piece of coupling ",
+    const std::string lost = lost_of(source);
+    TESS_CHECK(lost.empty(), lost, ", a source piece of coupling ",
                static_cast<std::uint64_t>(coupling),
                ", was destroyed after the last search: search again before values are given");
+  }
+
+  /// The turns of the applications that start on this PE, by any copy of the handle.
+  [[nodiscard]] std::shared_ptr<Turns> turns() const { return turns_; }
+
+  /// For checkpoints, between searches. A new run counts destroyed pieces from 0 on.
+  template <class Ar>
+  void serialize(Ar& ar) {
+    if constexpr (!Ar::is_reading) lost_ = lost_of(source_);
+    ar(source_, lost_);
+  }
+  void absorb(Ledger&& other) {
+    if (lost_.empty()) lost_ = std::move(other.lost_);
   }
 
   /// Entry method: gives the sums since the last call.
@@ -78,8 +97,17 @@ class Ledger : public Group<Ledger> {
     return ArrayProxy<Ledger>(array).destroyed_here();
   }
 
+  /// A source piece that was destroyed after the last search, on this PE or before a restart.
+  [[nodiscard]] std::string lost_of(CollectionId source) const {
+    const auto [n, last] = destroyed_here(source);
+    return n == n_destroyed_ ? lost_ : last;
+  }
+
   LedgerPage page_;
+  CollectionId source_{};  // of the last search
   std::uint64_t n_destroyed_ = 0;
+  std::string lost_;  // what lost_of() found when the run was saved; empty: nothing
+  std::shared_ptr<Turns> turns_ = std::make_shared<Turns>();
 };
 
 }  // namespace tess::m2m

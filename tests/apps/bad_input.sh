@@ -75,6 +75,8 @@ for unused in "--kind nearest" "--tolerance 0.1" --clamp "--partition rcb" "--vo
 done
 refuses "--chares 2 does not work with --from-weights" "${transfer[@]}" kuhn:2 kuhn:2 --from-weights "$scratch/w.nc" --chares 2
 refuses "'sideways(1)' is no motion" "${transfer[@]}" kuhn:2 kuhn:2 --steps 2 --move 'sideways(1)'
+refuses "--vector: needs --move A:rotate" "${transfer[@]}" kuhn:2 kuhn:2 --vector sin
+refuses "--vector sin: the field has 1 component, and a vector has 3" "${transfer[@]}" kuhn:2 kuhn:2 --fields sin --vector sin --steps 2 --move 'A:rotate(0,0,1,5deg)'
 refuses "--repeat .* --move" "${transfer[@]}" kuhn:2 kuhn:2 --repeat 2 --steps 2 --move 'translate(1,0,0)'
 refuses "--round-trips: '2,1'" "$bin/m2m_transfer" --json "$scratch/result.json" kuhn:2 kuhn:2 --round-trips 2,1
 "$bin/m2m_transfer" kuhn:2 kuhn:2 --round-trips 1 --kind all >"$scratch/out" || fail "--round-trips refuses --kind all"

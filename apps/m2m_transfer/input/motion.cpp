@@ -55,6 +55,17 @@ StepMotion parse_motion(const std::string& text, const std::vector<std::string>&
   return out;
 }
 
+void set_centre(StepMotion& motion, const Aabb& bounds) {
+  if (!motion.about_middle) return;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    motion.motion.centre[axis] = bounds.lo[axis] + 0.5 * (bounds.hi[axis] - bounds.lo[axis]);
+}
+
+void move_centres(std::vector<StepMotion>& motions, const RigidMotion& made) {
+  for (StepMotion& motion : motions)
+    if (motion.about_middle) move_points({&motion.motion.centre, 1}, made);
+}
+
 std::vector<RigidMotion> opposite(const std::vector<RigidMotion>& motions) {
   std::vector<RigidMotion> back;
   for (auto motion = motions.rbegin(); motion != motions.rend(); ++motion) {

@@ -28,6 +28,12 @@ struct StepMotion {
                                       const std::vector<std::string>& meshes,
                                       std::size_t default_mesh);
 
+/// Puts the centre of a motion about the middle of this box there.
+void set_centre(StepMotion& motion, const Aabb& bounds);
+
+/// After a motion of a mesh: its middle, which is a centre of these, has moved with it.
+void move_centres(std::vector<StepMotion>& motions, const RigidMotion& made);
+
 /// What moves points back, one after the other: the opposites of motions in the order in which they
 /// were made, from the last one on.
 [[nodiscard]] std::vector<RigidMotion> opposite(const std::vector<RigidMotion>& motions);

@@ -31,10 +31,7 @@ void read_motions(const Request& request, const std::vector<std::string>& names,
   for (const std::string& text : request.moves) {
     StepMotion one = parse_motion(text, names, problem.pairs.front().target);
     RunMesh& mesh = problem.meshes[one.mesh];
-    const auto& [low, high] = mesh.survey.census.bounds;
-    if (one.about_middle)
-      for (std::size_t axis = 0; axis < 3; ++axis)
-        one.motion.centre[axis] = low[axis] + 0.5 * (high[axis] - low[axis]);
+    set_centre(one, mesh.survey.census.bounds);
     mesh.motions.push_back(one);
   }
 }

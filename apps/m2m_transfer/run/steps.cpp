@@ -68,8 +68,7 @@ Task GraphRun::move_meshes() {
       // One after the other: broadcasts of one epoch may overtake each other.
       co_await epoch([&] { meshes_[m].workers.broadcast<&Worker::move>(motion); });
       motions_[m].push_back(motion);
-      for (StepMotion& other : problem_.meshes[m].motions)  // the middle moves with the mesh
-        if (other.about_middle) move_points({&other.motion.centre, 1}, motion);
+      move_centres(problem_.meshes[m].motions, motion);
       moved = true;
     }
   if (moved) co_await search_again();

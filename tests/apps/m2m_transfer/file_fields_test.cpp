@@ -187,6 +187,67 @@ TEST_CASE("all steps of a file are moved, and by weights from a file with the sa
   CHECK(FieldFile(request.out).times() == std::vector{3.5});
 }
 
+TEST_CASE("a vector of a file turns with its mesh, and other fields move with it",
+          "[m2m][driver]") {
+  const Scratch scratch;
+  FileFieldsRequest request;
+  request.source = scratch.path("rotor.exo");
+  request.target = "kuhn:5";
+  const TetMesh mesh = kuhn_mesh({3, 0.1});
+  ExodusSteps out(request.source, mesh);
+  Field temp{"temp", 1, {}}, v{"v", 3, {}};  // linear in place: exact on the target
+  for (const Point& p : mesh.points) {
+    temp.values.push_back(p[0]);
+    v.values.insert(v.values.end(), {p[0], 2, 0});
+  }
+  for (const double time : {0.0, 1.0}) out.add(time, std::array{temp, v});
+  out.finish();
+  request.fields = {"temp,v", "x"};
+  request.step = "all";
+  request.steps = 2;  // quarter turns to the first step; one more to the second
+  request.moves = {"A:rotate(0,0,1,60deg)", "A:rotate(0,0,1,30deg)"};
+  request.out = scratch.path("out.exo");
+  const auto worst = [&](const std::vector<std::string>& vectors, bool turns) {
+    request.vectors = vectors;
+    (void)moved(request);
+    const FieldFile file(request.out);
+    const TetMesh target = read_mesh(request.out);
+    double error = 0;
+    for (std::size_t step = 0; step < 2; ++step) {
+      const Field there = file.vertex_field(target, "temp", step),
+                  w = file.vertex_field(target, "v", step),
+                  formula = file.vertex_field(target, "x", step);
+      for (std::size_t i = 0; i < target.n_points(); ++i) {
+        // The body's x where the point is: the body has made a quarter turn, or half a turn.
+        const double x = step == 0 ? target.points[i][1] : 1 - target.points[i][0];
+        std::array<double, 3> want{x, 2, 0};
+        if (turns) want = step == 0 ? std::array{-2.0, x, 0.0} : std::array{-x, -2.0, 0.0};
+        for (std::size_t c = 0; c < 3; ++c)
+          error = std::max(error, std::abs(w.values[3 * i + c] - want[c]));
+        error = std::max({error, std::abs(there.values[i] - x), std::abs(formula.values[i] - x)});
+      }
+    }
+    return error;
+  };
+  CHECK(worst({"v"}, true) < 1e-13);
+  CHECK(worst({}, false) < 1e-13);
+
+  const auto refused = [&](auto change) {
+    FileFieldsRequest other = request;
+    change(other);
+    return refusal(other);
+  };
+  CHECK_THAT(refused([](auto& r) { r.vectors = {"temp"}; }),
+             Contains("--vector temp: the field has 1 component, and a vector has 3"));
+  CHECK_THAT(refused([](auto& r) { r.vectors = {"w"}; }), Contains("--vector w is no field"));
+  CHECK_THAT(refused([](auto& r) { r.moves = {"rotate(0,0,1,1)"}; }),
+             Contains("'rotate(0,0,1,1)'"));
+  CHECK_THAT(refused([](auto& r) { r.moves = {"translate(0,0,1)"}; }),
+             Contains("moves the target, which stays with fields of files"));
+  CHECK_THAT(refused([](auto& r) { r.moves.clear(); }),
+             Contains("--steps 2 applies fields of files once"));
+}
+
 TEST_CASE("fields, steps and weights that do not exist are refused by name", "[m2m][driver]") {
   const Scratch scratch;
   FileFieldsRequest good;
