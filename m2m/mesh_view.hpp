@@ -12,7 +12,7 @@ namespace tess::m2m {
 
 struct MeshView {
   std::span<const Point> points{};  ///< those that this part owns first, then its ghosts
-  std::span<const Tet> tets{};      ///< indices into points; empty for a cloud of targets
+  std::span<const Tet> tets{};      ///< indices into points; empty for a cloud
   std::span<const GlobalId>
       point_ids{};                      ///< per point; unique in the mesh; ties are decided by them
   std::span<const GlobalId> tet_ids{};  ///< per tetrahedron; unique in the mesh
