@@ -2,10 +2,10 @@
 
 #include "m2m/couple/integral_book.hpp"
 #include "m2m/couple/messages.hpp"
-#include "m2m/rows/interpolate/orientation.hpp"
 #include "runtime/core/error.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace tess::m2m {
@@ -13,16 +13,6 @@ namespace {
 
 /// An integral that is a smaller part of that of the magnitude is rounding.
 constexpr double least_part = 1e-12;
-
-/// The volume, area or length of a cell.
-double size_of(const MeshView& mesh, const Tet& tet) {
-  const auto c = corners_of(mesh.points, tet);
-  if (mesh.dimension == 3) return std::abs(orientation(c[0], c[1], c[2], c[3])) / 6;
-  const Point a = difference(c[1], c[0]), b = difference(c[2], c[0]);
-  if (mesh.dimension == 1) return std::sqrt(dot(a, a));
-  const Point normal = cross(a, b);
-  return std::sqrt(dot(normal, normal)) / 2;
-}
 
 }  // namespace
 
@@ -54,7 +44,10 @@ IntegralPage integrals_of(const MeshView& mesh, std::span<const double> values) 
   const std::size_t n_own = mesh.own_tets().size();
   const std::size_t n_corners = static_cast<std::size_t>(mesh.dimension) + 1;
   for (std::size_t t = 0; t < (has_all ? n_own : mesh.tets.size()); ++t) {
-    const double size = size_of(mesh, mesh.tets[t]);
+    std::array<Point, 4> corners;
+    for (std::size_t k = 0; k < 4; ++k)
+      corners[k] = mesh.points[static_cast<std::size_t>(mesh.tets[t][k])];
+    const double size = measure(corners, mesh.dimension);
     if (t < n_own) page.cells += size;
     const double part = size / static_cast<double>(n_corners);
     for (std::size_t k = 0; k < n_corners; ++k) {
