@@ -4,6 +4,7 @@
 // | kind                   | value of a target cell                                    | order |
 // |------------------------|-----------------------------------------------------------|-------|
 // | `nearest`              | of the source tetrahedron with the nearest centroid       | 1     |
+// | `moving_least_squares` | of the fit to source tetrahedra's values at centroids     | 2, 1  |
 // | `linear`               | of the source cell that holds its centroid                | 1     |
 // | `second_order`         | the same, with the recovered gradient of the source cell  | 2     |
 // | `limited`              | the same, kept within the source cells around             | 2     |
@@ -12,7 +13,7 @@
 // | `conservative_lumped`  | mean over what overlaps it of the source cells' values    | 1     |
 //
 // Kinds with gradients are exact for linear fields; limits lower the order at extrema and
-// boundaries. Across a single layer of elements that is flat, or so gently curved that the
+// boundaries. Moving least squares are of order 1 if source elements were split. Across a single layer of elements that is flat, or so gently curved that the
 // neighbours of an element lie less than a quarter as far off its plane as its own corners, the
 // gradient is zero. An element that was split is one cell of the source (TetMesh::element_of_tet).
 // In the target each of its tetrahedra gets a value of its own. The result depends only on the

@@ -42,6 +42,16 @@
 // the cell, or all cells around the point, `snapped` if it covers them in part, otherwise
 // `outside`.
 //
+// Nodal forces go back by the transposed rows, so that their sum, and with linear rows that of their
+// moments, stays as it is to rounding. One search serves both:
+//
+// Sample: tests/m2m/couple/transposed_test.cpp
+//
+//     Coupling displacements(structure, wall, {.policy = Nearest{}});
+//     co_await displacements.search();
+//     Coupling forces = displacements.transposed();  // from the wall to the structure
+//     co_await forces.search();                      // no geometry: the donors are those found above
+//
 // A coupling can be a member of the state of a checkpoint. After the restart, on any number of PEs,
 // it applies without a search, with the bits of the run that was not interrupted.
 //
@@ -75,10 +85,11 @@ struct CouplingOptions {
   /// A point outside that is at most so far from a tetrahedron, in units of the mesh, snaps to the
   /// nearest one. Its value is that of the nearest point there. Kinds that are not conservative.
   double tolerance = 0;
-  /// Keeps values within those of the vertices of the donor. It matters for points that snap within
-  /// rounding, whose values extrapolate, and for second_order, which then is `limited`.
-  /// Kinds that are not conservative.
+  /// Keeps values within those of the vertices of the donor, or of the neighbours. It matters for
+  /// points that snap within rounding, whose values extrapolate, for moving least squares, and for
+  /// second_order, which then is `limited`. Kinds that are not conservative.
   bool clamp = false;
+  std::int32_t order = 1;  ///< of the polynomials of moving least squares: 1 or 2
   /// What the values belong to. Sources: anything for linear and conservative kinds, nodes for the
   /// others. Targets: nodes, or cells for conservative kinds.
   Centring source_values = Centring::nodes;
@@ -99,6 +110,12 @@ struct SearchSummary {
   double narrow = 0;  ///< point location, points outside
   Tally tally;        ///< of the target points
   WorstPlaces worst;  ///< of the target points that are snapped or outside
+};
+
+/// What a transposed coupling does if points that give forces have no donor.
+enum class LostForces : std::uint8_t {
+  refuse,  ///< search() throws Error (bad_mesh) with their number
+  allow,   ///< their forces are left out; Tally::n_lost counts the points
 };
 
 struct CouplingSetup;
@@ -136,6 +153,8 @@ class AnyCoupling {
 
  protected:
   AnyCoupling(PieceArray source, PieceArray target, CouplingOptions options);
+  /// The transposed of `forth`.
+  AnyCoupling(const AnyCoupling& forth, LostForces lost);
   Task apply(detail::Giver give, detail::Taker take, std::function<void(CouplingId)> last);
 
  private:
@@ -143,6 +162,7 @@ class AnyCoupling {
 
   Task collide_covers();
   TaskOf<LedgerPage> find_sources();
+  Task pass_rows() const;
 
   std::unique_ptr<State> state_;
 };
@@ -177,6 +197,24 @@ class Coupling : public AnyCoupling {
     return AnyCoupling::apply(detail::Giver(detail::GiverOf<S, Give>::kind),
                               detail::Taker(detail::TakerOf<T, Take>::kind), std::move(last));
   }
+
+  /// The coupling from T to S by the transposed rows of the last search of this one: a point that S
+  /// owns gets the sum, over the points of T, of weight × value. For values that are forces at
+  /// points. S takes n_owned × n_components, and 0 where no row is; T gives a row per point.
+  ///
+  /// It has its own search(), which looks at no geometry, and follows each search of this coupling.
+  /// It is valid until this coupling is destroyed. The status of a point of S is `inside` if it
+  /// gets forces, otherwise `outside`. Each point of T, and of S, is owned by one piece (view_of()
+  /// for a MeshPiece). Not before the first search. Throws Error (bad_argument) if the kind has no
+  /// weights (coupling_weights.hpp), or values are clamped or not in nodes.
+  [[nodiscard]] Coupling<T, S> transposed(LostForces lost = LostForces::refuse) const {
+    return Coupling<T, S>(*this, lost);
+  }
+
+ private:
+  template <class, class>
+  friend class Coupling;
+  Coupling(const AnyCoupling& forth, LostForces lost) : AnyCoupling(forth, lost) {}
 };
 
 }  // namespace tess::m2m

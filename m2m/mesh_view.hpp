@@ -12,7 +12,7 @@ namespace tess::m2m {
 
 struct MeshView {
   std::span<const Point> points{};  ///< those that this part owns first, then its ghosts
-  std::span<const Tet> tets{};      ///< indices into points; empty for a cloud of targets
+  std::span<const Tet> tets{};      ///< indices into points; empty for a cloud
   std::span<const GlobalId>
       point_ids{};                      ///< per point; unique in the mesh; ties are decided by them
   std::span<const GlobalId> tet_ids{};  ///< per tetrahedron; unique in the mesh
@@ -34,7 +34,8 @@ struct MeshView {
 };
 
 /// Throws Error (bad_mesh) with the first point, index or list that cannot be used: coordinates
-/// must be finite and at most 1e100, corners in range, and ids as many as points and tetrahedra.
+/// must be finite and at most 1e100, corners in range, cells of the dimension, and ids as many as
+/// points and cells.
 void validate(const MeshView& mesh);
 
 }  // namespace tess::m2m

@@ -17,6 +17,12 @@ struct Tally {
   /// its tetrahedra overlap there. Their values are not the projection of one field.
   std::uint64_t n_overcovered = 0;
   double most_covered = 0;  ///< the greatest coverage among these, such as 1.25 times
+  /// Counts, for transposed couplings, points that give forces to no vertex, since they have no
+  /// donor: these forces are lost.
+  std::uint64_t n_lost = 0;
+  /// Counts, for moving least squares, points whose neighbours determine a polynomial of lower
+  /// order only, or one of this order in fewer directions, such as those in a plane.
+  std::uint64_t n_lower_order = 0, n_lower_dimension = 0;
 
   [[nodiscard]] std::uint64_t count(Status status) const {
     return counts[static_cast<std::size_t>(status)];
@@ -26,6 +32,9 @@ struct Tally {
     n_candidates += other.n_candidates;
     n_kept_sources += other.n_kept_sources;
     n_overcovered += other.n_overcovered;
+    n_lost += other.n_lost;
+    n_lower_order += other.n_lower_order;
+    n_lower_dimension += other.n_lower_dimension;
     if (other.most_covered > most_covered) most_covered = other.most_covered;
     return *this;
   }

@@ -12,7 +12,10 @@ enum class TransferKind : std::uint8_t {
   second_order,  ///< with recovered gradients: third order where the field is smooth, not bounded
   limited,       ///< the same, kept within the values at the corners of the tetrahedron
   nearest,       ///< the value of the nearest vertex, also outside: first order, bounded
-  conservative,  ///< L2 projection: keeps the integral; second order, not bounded
+  /// the polynomial that fits the values of the nearest vertices best, of clouds or of meshes, also
+  /// outside: second order, or third (CouplingOptions::order); not bounded
+  moving_least_squares,
+  conservative,          ///< L2 projection: keeps the integral; second order, not bounded
   conservative_bounded,  ///< the same, kept within the source values that overlap
   conservative_lumped,   ///< with lumped masses: keeps integral and bounds, but smooths
 };
@@ -21,18 +24,20 @@ inline constexpr std::array all_transfer_kinds{
     TransferKind::second_order,
     TransferKind::limited,
     TransferKind::nearest,
+    TransferKind::moving_least_squares,
     TransferKind::conservative,
     TransferKind::conservative_bounded,
     TransferKind::conservative_lumped,
 };
 
-/// "linear", "second-order", "limited", "nearest", "conservative",
+/// "linear", "second-order", "limited", "nearest", "moving-least-squares", "conservative",
 /// "conservative-bounded" or "conservative-lumped".
 [[nodiscard]] const char* name_of(TransferKind kind) noexcept;
 /// The kind of a name. Throws Error (bad_argument) for any other text.
 [[nodiscard]] TransferKind parse_transfer_kind(const std::string& text);
 
-/// Conservative kinds integrate over the intersections of tetrahedra; the others interpolate.
+/// Conservative kinds integrate over the intersections of tetrahedra; the others give values at
+/// points.
 [[nodiscard]] constexpr bool is_conservative(TransferKind kind) noexcept {
   return kind >= TransferKind::conservative;
 }

@@ -1,5 +1,6 @@
 #include "m2m/couple/any_piece.hpp"
 
+#include "m2m/couple/integral_book.hpp"
 #include "m2m/couple/row_book.hpp"
 #include "m2m/couple/source_side.hpp"
 #include "m2m/couple/target_side.hpp"
@@ -7,6 +8,15 @@
 #include <utility>
 
 namespace tess::m2m {
+namespace {
+
+void check_points(const MeshView& mesh, const TargetFound& found) {
+  TESS_CHECK(mesh.n_owned == std::ssize(found.status), "a piece owns ", mesh.n_owned,
+             " points, and owned ", found.status.size(),
+             " in the last search of the coupling: search again when points change");
+}
+
+}  // namespace
 
 std::span<const Status> AnyPiece::status(CouplingId id) const {
   return couplings.target(id).found().status;
@@ -23,14 +33,20 @@ void AnyPiece::m2m_submit(const CouplingSetup& setup, collide::ModelId side) {
   if (side == source_model) {
     SourceSide& from = couplings.add_source(setup.id);
     from.setup = setup;
-    setup.collider.submit_early({m2m_owner(), side, from.start_search(mesh)});
+    std::vector<Aabb> boxes = from.start_search(mesh);
+    if (setup.collides()) setup.collider.submit_early({m2m_owner(), side, std::move(boxes)});
     if (from.has_kept_cover()) setup.ledger.local().add(Tally{.n_kept_sources = 1});
     return;
   }
   TargetSide& to = couplings.add_target(setup.id);
   to.setup = setup;
-  setup.collider.submit_early({m2m_owner(), side, to.start_search(mesh)});
-  if (!setup.has_projection()) return;
+  if (setup.is_transposed()) {
+    to.start_search(couplings.source(setup.forth).donor_rows(mesh));
+  } else {
+    std::vector<Aabb> boxes = to.start_search(mesh);
+    if (setup.collides()) setup.collider.submit_early({m2m_owner(), side, std::move(boxes)});
+  }
+  if (!setup.has_directory()) return;
   std::vector<std::vector<PointReport>> by_pe(static_cast<std::size_t>(n_pes()));
   for (const PointReport& report : to.point_reports(mesh, m2m_owner()))
     by_pe[static_cast<std::size_t>(directory_pe(report.id, n_pes()))].push_back(report);
@@ -49,8 +65,8 @@ void AnyPiece::m2m_ask(CouplingId id) {
     m2m_send<&AnyPiece::m2m_query>(to.setup.source, source, std::move(query));
   for (auto& [source, choice] : step.choices)
     m2m_send<&AnyPiece::m2m_choose>(to.setup.source, source, std::move(choice));
-  for (const collide::OwnerId piece : step.greetings)
-    m2m_send<&AnyPiece::m2m_receive>(to.setup.target, piece, SearchAnswer{id, {}, Greeting{}});
+  for (auto& [piece, answer] : step.beside)
+    m2m_send<&AnyPiece::m2m_receive>(to.setup.target, piece, std::move(answer));
   Ledger& ledger = to.setup.ledger.local();
   if (step.then == SearchStep::Then::sources) ledger.add_waiting();
   if (step.then != SearchStep::Then::nothing) return;
@@ -79,6 +95,16 @@ void AnyPiece::m2m_answer(CouplingId id) {
 void AnyPiece::m2m_receive(SearchAnswer answer) {
   const CouplingId id = answer.coupling;
   if (couplings.target(id).add(std::move(answer))) m2m_ask(id);
+}
+void AnyPiece::m2m_name_points(CouplingId id) {
+  const MeshView mesh = m2m_view();
+  const CouplingSetup& setup = couplings.source(id).setup;
+  const TargetFound& found = couplings.target(setup.forth).found();
+  check_points(mesh, found);
+  std::uint64_t n_lost = 0;
+  for (auto& [piece, answer] : donated(id, mesh, found, m2m_owner(), n_lost))
+    m2m_send<&AnyPiece::m2m_receive>(setup.target, piece, std::move(answer));
+  setup.ledger.local().add(Tally{.n_lost = n_lost});
 }
 void AnyPiece::m2m_name(CouplingId id) {
   const MeshView mesh = m2m_view();
@@ -144,12 +170,22 @@ void AnyPiece::m2m_give_rows(CouplingId id, GroupProxy<RowBook> book) {
 void AnyPiece::m2m_take_rows(GivenRows given) {
   const MeshView mesh = m2m_view();
   const TargetFound& found = couplings.target(given.coupling).found();
-  TESS_CHECK(mesh.n_owned == std::ssize(found.status), "a piece owns ", mesh.n_owned,
-             " points, and owned ", found.status.size(),
-             " in the last search of the coupling: search again when points change");
+  check_points(mesh, found);
   for (const std::uint32_t point : found.given.places_of(given.from))
     given.rows.targets.push_back(mesh.point_ids[point]);
   given.book.local().add(given.rows);
+}
+
+void AnyPiece::m2m_integrate(CouplingId id, GroupProxy<IntegralBook> book, detail::Giver give) {
+  book.local().add(integrals_of(m2m_view(), give->show(*this, id)));
+}
+void AnyPiece::m2m_integrate_taken(CouplingId id, GroupProxy<IntegralBook> book,
+                                   detail::Taker take) {
+  book.local().add(integrals_of(m2m_view(), take->show(*this, id)));
+}
+void AnyPiece::m2m_scale(CouplingId id, detail::Taker take, const std::vector<double>& factors) {
+  const std::span<double> values = take->show(*this, id);
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] *= factors[i % factors.size()];
 }
 
 void AnyPiece::m2m_release(CouplingId id) {

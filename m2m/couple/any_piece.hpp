@@ -23,6 +23,11 @@
 // which ones these are (SharedPoints), those that have sources greet the others in the end
 // (Greeting), and GivenValues go between them in each step of a projection.
 //
+// A transposed coupling has no geometry: its target pieces start from the donors that they hold
+// (source_side.hpp), a PointDirectory reports to them the owners of their ghosts, its source pieces name
+// the points that got these donors (DonatedPoints), and the weights of ghosts go to the owners
+// (TransposedWeights), which choose. `give` then sends raw values, to which the target applies rows.
+//
 // A target piece that no source piece gives values attaches itself to one by a Choice. That source
 // piece announces to it the rounds that pieces start.
 #pragma once
@@ -51,6 +56,7 @@ struct SearchAnswer;
 struct Choice;
 struct GivenValues;
 struct GivenRows;
+class IntegralBook;
 class RowBook;
 class PieceArray;
 
@@ -78,6 +84,7 @@ class AnyPiece {
   void m2m_query(SearchQuery query);
   void m2m_answer(CouplingId id);
   void m2m_receive(SearchAnswer answer);
+  void m2m_name_points(CouplingId id);
   void m2m_name(CouplingId id);
   void m2m_receive_names(CouplingId id, const std::vector<SourcePiece>& sources);
   void m2m_choose(Choice choice);
@@ -93,6 +100,11 @@ class AnyPiece {
   // Of weights (coupling_weights.hpp): they go to the pieces of the target.
   void m2m_give_rows(CouplingId id, GroupProxy<RowBook> book);
   void m2m_take_rows(GivenRows given);
+
+  // Of scaled transfers (scaled.hpp).
+  void m2m_integrate(CouplingId id, GroupProxy<IntegralBook> book, detail::Giver give);
+  void m2m_integrate_taken(CouplingId id, GroupProxy<IntegralBook> book, detail::Taker take);
+  void m2m_scale(CouplingId id, detail::Taker take, const std::vector<double>& factors);
 
   void m2m_release(CouplingId id);
 

@@ -12,6 +12,7 @@ namespace {
 CellForm form_of(TransferKind kind) {
   switch (kind) {
     case TransferKind::nearest:
+    case TransferKind::moving_least_squares:
       return CellForm::points;
     case TransferKind::second_order:
     case TransferKind::conservative:

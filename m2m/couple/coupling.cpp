@@ -1,6 +1,7 @@
 #include "m2m/coupling.hpp"
 
 #include "m2m/couple/messages.hpp"
+#include "m2m/coupling_weights.hpp"
 #include "runtime/core/error.hpp"
 
 #include <algorithm>
@@ -43,6 +44,12 @@ void check(const CouplingOptions& options) {
   if (!(options.tolerance >= 0 && options.tolerance <= 1e100))
     fail(ErrorCode::bad_argument, "tolerance ", options.tolerance,
          " is not a length; choose 0 to 1e100 in units of the mesh");
+  if (options.order < 1 || options.order > 2)
+    fail(ErrorCode::bad_argument, "order ", options.order,
+         " of moving least squares is not offered: choose 1 or 2");
+  if (options.kind == TransferKind::moving_least_squares && options.tolerance > 0)
+    fail(ErrorCode::bad_argument, "kind ", name_of(options.kind),
+         " looks at no tetrahedron: leave out the tolerance, its points all get values");
   if (is_conservative(options.kind)) {
     if (options.tolerance > 0 || options.clamp)
       fail(ErrorCode::bad_argument, "kind ", name_of(options.kind),
@@ -93,6 +100,8 @@ struct AnyCoupling::State {
   CouplingOptions options;
   CouplingSetup setup{};
   UnderWay under_way{};
+  std::optional<CouplingSetup> forth{};  ///< of the coupling that this one is the transposed of
+  LostForces lost{};
 
   void enter(const char* phase) const {
     if (options.on_phase != nullptr) (*options.on_phase)(phase);
@@ -119,14 +128,18 @@ struct AnyCoupling::State {
     setup.kind = options.kind;
     setup.tolerance = options.tolerance;
     setup.clamp = options.clamp;
+    setup.order = options.order;
     setup.source_values = options.source_values;
     setup.target_values = options.target_values;
-    setup.collider = collide::make_collider(
-        {.voxel_size = options.voxel_size, .rules = {.within_model = collide::WithinModel::skip}});
+    if (forth) setup.forth = forth->id;
+    if (setup.collides())
+      setup.collider =
+          collide::make_collider({.voxel_size = options.voxel_size,
+                                  .rules = {.within_model = collide::WithinModel::skip}});
     setup.ledger = create<Ledger>(each_pe);
-    if (setup.has_projection()) setup.directory = create<PointDirectory>(each_pe);
-    // Each coupling has its own collider.
-    setup.id = CouplingId{setup.collider.voxels.id().value};
+    if (setup.has_directory()) setup.directory = create<PointDirectory>(each_pe);
+    // Each coupling has its own ledger.
+    setup.id = CouplingId{setup.ledger.id().value};
   }
   [[nodiscard]] std::vector<std::byte> target_bytes() const {
     return to_bytes(std::tuple(target, setup.id));
@@ -150,12 +163,30 @@ AnyCoupling::AnyCoupling(PieceArray source, PieceArray target, CouplingOptions o
   if (given.kind == TransferKind::second_order && given.clamp) given.kind = TransferKind::limited;
 }
 
+AnyCoupling::AnyCoupling(const AnyCoupling& forth, LostForces lost) {
+  const State& of = *forth.state_;
+  of.require_usable("transposed");
+  TESS_CHECK(of.setup.id != CouplingId{},
+             "a coupling is transposed before its first search: co_await search() first");
+  TESS_CHECK(!of.forth, "a transposed coupling is transposed: use the one that it was made of");
+  require_weights(of.setup.kind, of.setup.clamp);
+  if (of.setup.source_values != Centring::nodes)
+    fail(ErrorCode::bad_argument, "a coupling with source values in ",
+         rows_of(of.setup.source_values),
+         " has no transposed one: forces go to points; couple with source values in nodes");
+  // A point of S without a row gets the value 0.
+  state_ = std::make_unique<State>(State{of.target, of.source, {.policy = UseValue{0}}});
+  state_->forth = of.setup;
+  state_->lost = lost;
+}
+
 template <class Ar>
 void AnyCoupling::serialize(Ar& ar) {
   State& state = *state_;
   CouplingOptions& options = state.options;
   ar(state.source, state.target, state.setup, options.voxel_size, options.policy, options.kind,
-     options.tolerance, options.clamp, options.source_values, options.target_values);
+     options.tolerance, options.clamp, options.order, options.source_values, options.target_values,
+     state.forth, state.lost);
 }
 template void AnyCoupling::serialize(Reader&);
 template void AnyCoupling::serialize(Writer&);
@@ -181,9 +212,9 @@ void AnyCoupling::destroy() {
   if (setup.id == CouplingId{}) return;
   setup.source.broadcast<&AnyPiece::m2m_release>(setup.id);
   setup.target.broadcast<&AnyPiece::m2m_release>(setup.id);
-  setup.collider.destroy();
+  if (setup.collides()) setup.collider.destroy();
   setup.ledger.destroy();
-  if (setup.has_projection()) setup.directory.destroy();
+  if (setup.has_directory()) setup.directory.destroy();
   setup = {};
 }
 
@@ -193,6 +224,9 @@ TaskOf<SearchSummary> AnyCoupling::search() {
              "a coupling searches while a search or an application of it is under way: co_await "
              "that first");
   state.require_usable("searched");
+  TESS_CHECK(!state.forth || !has_ended(state.forth->ledger.id()),
+             "a transposed coupling is searched after the one that it was made of was destroyed: "
+             "destroy that later, or transpose a new one");
   const OneUnderWay one(state.under_way.n_searches);
   state.enter("broad");
   const Time start = now();
@@ -200,6 +234,10 @@ TaskOf<SearchSummary> AnyCoupling::search() {
   const Time broad = now();
   state.enter("narrow");
   const LedgerPage found = co_await find_sources();
+  if (found.tally.n_lost > 0 && state.lost == LostForces::refuse)
+    fail(ErrorCode::bad_mesh, found.tally.n_lost,
+         " points that give forces have no donor, and their forces would be lost: couple forth "
+         "with policy Nearest{} or a tolerance, or allow it by LostForces::allow");
   co_return SearchSummary{seconds(broad - start), seconds(now() - broad), found.tally, found.worst};
 }
 
@@ -214,20 +252,29 @@ Task AnyCoupling::collide_covers() {
     setup.source.broadcast<&AnyPiece::m2m_submit>(setup, source_model);
     setup.target.broadcast<&AnyPiece::m2m_submit>(setup, target_model);
   });
+  if (!setup.collides()) co_return;
   co_await setup.collider.run(
       {Callback<collide::Hits>(detail::hits_kind, state.target_bytes()), target_model});
+}
+
+/// Of a transposed coupling: weights come to the target pieces, and then to the owners of ghosts.
+Task AnyCoupling::pass_rows() const {
+  const CouplingSetup& setup = state_->setup;
+  co_await epoch([&] { setup.source.broadcast<&AnyPiece::m2m_name_points>(setup.id); });
+  co_await epoch([&] { setup.target.broadcast<&AnyPiece::m2m_ask>(setup.id); });
 }
 
 /// Only points that are in no tetrahedron need to know all source pieces, and pieces without
 /// sources one of them.
 TaskOf<LedgerPage> AnyCoupling::find_sources() {
   const CouplingSetup& setup = state_->setup;
-  if (setup.has_projection()) {
+  if (setup.has_directory()) {
     co_await epoch([&] {
       setup.directory.broadcast<&PointDirectory::resolve>(
           Callback<SharedPoints>(detail::shared_points_kind, state_->target_bytes()));
     });
   }
+  if (setup.is_transposed()) co_await pass_rows();
   co_await epoch([&] { setup.target.broadcast<&AnyPiece::m2m_ask>(setup.id); });
   LedgerPage found = co_await setup.ledger.reduce<&Ledger::close_page>();
   if (found.n_waiting == 0 && found.n_alone == 0) co_return found;

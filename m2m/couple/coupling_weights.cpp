@@ -61,6 +61,10 @@ TaskOf<WeightMatrix> collect_weights(const AnyCoupling& coupling, std::int64_t n
       setup.id != CouplingId{},
       "weights of a coupling are collected before its first search: co_await search() first");
   require_weights(setup.kind, setup.clamp);
+  TESS_CHECK(!setup.applies_at_target(),
+             "weights that the target applies are not collected, of kind ", name_of(setup.kind),
+             " or of a transposed coupling: collect those of a linear coupling, and transpose "
+             "them");
   TESS_CHECK(setup.source_values == Centring::nodes,
              "weights are of values at points, and the coupling's source values are in ",
              rows_of(setup.source_values));

@@ -70,6 +70,53 @@ void GivenPlaces::join(std::vector<std::pair<collide::OwnerId, PartialRows>> par
   }
 }
 
+Addressed<std::vector<VertexId>> GivenPlaces::keep_weights(std::span<const PlaceWeight> weights) {
+  // Per source piece and point: whether its value is needed, then its position among all values.
+  std::map<collide::OwnerId, std::vector<std::uint32_t>> numbers;
+  for (const PlaceWeight& w : weights) {
+    std::vector<std::uint32_t>& needed = numbers[w.source];
+    const auto vertex = static_cast<std::size_t>(w.vertex);
+    if (needed.size() <= vertex) needed.resize(std::max(vertex + 1, 2 * needed.size()), 0);
+    needed[vertex] = 1;
+  }
+  Addressed<std::vector<VertexId>> out;
+  for (auto& [piece, number] : numbers) {
+    std::vector<VertexId> sent;
+    Source& source = sources_[piece];
+    source.first_value = n_values_;
+    for (std::size_t v = 0; v < number.size(); ++v) {
+      if (number[v] == 0) continue;
+      number[v] = n_values_++;
+      sent.push_back(static_cast<VertexId>(v));
+    }
+    source.n_values = static_cast<std::uint32_t>(sent.size());
+    source.sent = sent;
+    out.emplace_back(piece, std::move(sent));
+  }
+  for (auto w = weights.begin(); w != weights.end();) {
+    shared_places_.push_back(w->place);
+    for (; w != weights.end() && w->place == shared_places_.back(); ++w)
+      shared_rows_.add(
+          static_cast<VertexId>(numbers[w->source][static_cast<std::size_t>(w->vertex)]),
+          w->weight);
+    shared_rows_.end_row();
+  }
+  return out;
+}
+
+std::vector<PlaceWeight> GivenPlaces::weights() const {
+  std::vector<std::pair<collide::OwnerId, VertexId>> values;  // in the order of their numbers
+  for (const auto& [piece, source] : sources_)
+    for (const VertexId vertex : source.sent) values.emplace_back(piece, vertex);
+  std::vector<PlaceWeight> out;
+  for (std::size_t row = 0; row < shared_rows_.n_rows(); ++row)
+    for (std::uint64_t k = shared_rows_.begin[row]; k < shared_rows_.begin[row + 1]; ++k) {
+      const auto& [piece, vertex] = values[static_cast<std::size_t>(shared_rows_.columns[k])];
+      out.push_back({shared_places_[row], vertex, piece, shared_rows_.weights[k]});
+    }
+  return out;
+}
+
 GivenPlaces::Sums GivenPlaces::add_up(const std::vector<GivenValues>& messages,
                                       std::size_t n_places, bool with_ranges) const {
   constexpr double inf = std::numeric_limits<double>::infinity();

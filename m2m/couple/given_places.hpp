@@ -2,7 +2,7 @@
 // to some places. If the kind is conservative these are loads, and a row that only one source piece
 // has stays there. The parts of a row that several source pieces have come here: they are added, and
 // the row is applied here, to values that these pieces send. Both compute a load from the same
-// weights in the same order of ids.
+// weights in the same order of ids. Other couplings may apply all of their rows here.
 #pragma once
 
 #include "m2m/couple/messages.hpp"
@@ -15,6 +15,14 @@
 
 namespace tess::m2m {
 
+/// A weight of a row that is applied here, to the value of a point of a source piece.
+struct PlaceWeight {
+  std::uint32_t place = 0;
+  VertexId vertex = 0;  ///< in the source piece
+  collide::OwnerId source{};
+  double weight = 0;
+};
+
 class GivenPlaces {
  public:
   /// The places that a source piece gives values or has rows for, in its order.
@@ -24,7 +32,18 @@ class GivenPlaces {
   /// After all of these: the other rows of the source pieces.
   void join(std::vector<std::pair<collide::OwnerId, PartialRows>> partial);
 
+  /// In place of all these: rows that are applied here, by place; the weights of a row are added
+  /// in their order. Returns the points whose values each source piece has to send.
+  [[nodiscard]] Addressed<std::vector<VertexId>> keep_weights(std::span<const PlaceWeight> weights);
+
   [[nodiscard]] std::size_t n_sources() const { return sources_.size(); }
+  /// Calls visit(source piece, the places that it gives values, in its order).
+  template <class Visit>
+  void for_sources(const Visit& visit) const {
+    for (const auto& [piece, source] : sources_) visit(piece, std::span(source.places));
+  }
+  /// What keep_weights() got, in the same order.
+  [[nodiscard]] std::vector<PlaceWeight> weights() const;
   /// The places that a source piece gives values, in its order.
   [[nodiscard]] std::span<const std::uint32_t> places_of(collide::OwnerId source) const {
     return sources_.at(source).places;
@@ -50,9 +69,10 @@ class GivenPlaces {
     std::vector<std::uint32_t> shared{};  // of which it has a part, in its order
     std::uint32_t first_value = 0;        // of its unknowns, among those of all sources
     std::uint32_t n_values = 0;
+    std::vector<VertexId> sent{};  // these unknowns, if keep_weights() chose them
     template <class Ar>
     void serialize(Ar& ar) {
-      ar(places, shared, first_value, n_values);
+      ar(places, shared, first_value, n_values, sent);
     }
   };
 

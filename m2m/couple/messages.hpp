@@ -38,14 +38,29 @@ struct CouplingSetup {
   TransferKind kind{};
   double tolerance = 0;
   bool clamp = false;
+  std::int32_t order = 1;
   Centring source_values{}, target_values{};
-  GroupProxy<PointDirectory> directory;  ///< only where target pieces exchange values of ghosts
+  GroupProxy<PointDirectory> directory;  ///< only where has_directory()
+  CouplingId forth{};                    ///< the coupling whose rows are transposed, if any
 
-  [[nodiscard]] bool is_conservative() const { return m2m::is_conservative(kind); }
+  [[nodiscard]] bool is_conservative() const {
+    return !is_transposed() && m2m::is_conservative(kind);
+  }
+  [[nodiscard]] bool is_transposed() const { return forth != CouplingId{}; }
+  /// Pieces that are near are found by the collider.
+  [[nodiscard]] bool collides() const { return !is_transposed() && !fits(); }
+  /// Rows follow from the nearest vertices of each point.
+  [[nodiscard]] bool fits() const { return kind == TransferKind::moving_least_squares; }
+  /// Source pieces also send raw values, to which the target applies rows.
+  [[nodiscard]] bool applies_at_target() const {
+    return is_conservative() || is_transposed() || fits();
+  }
   /// The values of points are the solution of a system of equations over all target pieces.
   [[nodiscard]] bool has_projection() const {
     return is_conservative() && target_values == Centring::nodes;
   }
+  /// Target pieces learn which of their points others hold, too.
+  [[nodiscard]] bool has_directory() const { return has_projection() || is_transposed(); }
 };
 
 /// Messages, each with the piece that it goes to.
@@ -59,6 +74,7 @@ struct DonorQuery {
 };
 /// Which of your vertices are nearest to these points?
 struct NearestQuery {
+  std::uint32_t n_nearest = 1;
   std::vector<std::uint32_t> keys;  ///< per point, from the target piece: they come back
   std::vector<Point> points;
   std::vector<double> squared_reaches;  ///< per point: farther vertices are not of interest
@@ -75,12 +91,13 @@ struct DonorAnswer {
   std::vector<std::uint32_t> points;  ///< indices into the points of the query
   std::vector<Candidate> candidates;
 };
-/// The nearest vertex per point; -1 if none is within reach.
+/// The nearest vertices within reach.
 struct NearestAnswer {
-  std::vector<std::uint32_t> keys;  ///< those of the query
+  std::vector<std::uint32_t> keys;  ///< those of the query; one for each of its vertices
   std::vector<double> squared_distances;
   std::vector<GlobalId> ids;
   std::vector<VertexId> vertices;  ///< in the source piece
+  std::vector<Point> points;       ///< if more than one is asked for
 };
 /// Says which tetrahedra overlap, how much of them, and which unknowns of the query have a row.
 struct OverlapAnswer {
@@ -98,11 +115,32 @@ struct PartialRows {
 };
 /// From a target piece to those beside it: it takes part in projections.
 struct Greeting {};
+/// In the search of a transposed coupling, from a piece that gives forces: its points whose donors
+/// the receiver holds, in the order of these.
+struct DonatedPoints {
+  std::vector<GlobalId> ids;
+  std::vector<VertexId> points;  ///< in the sender
+};
+/// A weight of a transposed row.
+struct TransposedWeight {
+  VertexId vertex = 0;  ///< gets the force: in the piece that owns it
+  VertexId point = 0;   ///< gives it: in `piece`
+  GlobalId point_id = 0;
+  collide::OwnerId piece{};
+  double weight = 0;
+};
+/// Weights of the receiver's vertices, from a piece that holds ghosts of them, or from one whose
+/// points have rows without donors.
+struct TransposedWeights {
+  std::vector<TransposedWeight> weights;
+};
 /// To a target piece, in a search. SharedPoints are the directory's reply to its reports.
 struct SearchAnswer {
   CouplingId coupling{};
   collide::OwnerId from{};
-  std::variant<DonorAnswer, NearestAnswer, OverlapAnswer, PartialRows, SharedPoints, Greeting> what;
+  std::variant<DonorAnswer, NearestAnswer, OverlapAnswer, PartialRows, SharedPoints, Greeting,
+               DonatedPoints, TransposedWeights>
+      what;
 };
 
 /// The end of a search, from a target piece to a source piece: what to send from now on, in this
@@ -117,7 +155,8 @@ struct Choice {
 
 /// Values for a target piece: per donor in the order of its Choice. With conservative kinds the
 /// loads of the rows that were kept; if the kind is bounded, as many pairs (low, high); then the
-/// values of PartialRows::ids. All have n_components columns.
+/// values of PartialRows::ids. With rows of the target those of Choice::vertices. All have
+/// n_components columns.
 struct GivenValues {
   CouplingId coupling{};
   collide::OwnerId from{};

@@ -41,9 +41,9 @@ std::vector<SharedPoints> compare(std::vector<PointReport> all) {
              " of the target is owned by two pieces: give the points of separate meshes different "
              "ids, and let one piece own each");
       lists[owner.piece].points.push_back(
-          {report.piece, owner.id, owner.point, true, owner.volume});
+          {report.piece, owner.id, owner.point, report.point, true, owner.volume});
       lists[report.piece].points.push_back(
-          {owner.piece, owner.id, report.point, false, owner.volume});
+          {owner.piece, owner.id, report.point, owner.point, false, owner.volume});
     }
     if (n_tets != owner.n_tets)
       fail(ErrorCode::bad_mesh, "the piece that owns point ", owner.id, " of the target shows ",

@@ -27,6 +27,7 @@ struct SharedPoint {
   collide::OwnerId other{};
   GlobalId id = 0;
   std::int32_t point = 0;  ///< local
+  std::int32_t there = 0;  ///< local in the other piece
   bool is_owner = false;   ///< this piece owns it, and the other holds a ghost
   double volume = 0;       ///< of the tetrahedra around it
 };

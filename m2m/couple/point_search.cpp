@@ -9,10 +9,12 @@
 
 namespace tess::m2m {
 
-std::vector<Aabb> PointSearch::start(const MeshView& mesh) {
+std::vector<Aabb> PointSearch::start(const CouplingSetup& setup, const MeshView& mesh) {
   // Its tetrahedra are not looked at.
   validate(MeshView{mesh.points, {}, mesh.point_ids, {}, mesh.n_owned});
   best_.assign(static_cast<std::size_t>(mesh.n_owned), {});
+  if (setup.fits()) fits_.emplace(setup.order, best_.size());
+  if (!setup.collides()) return {};
   cover_ = cover_points(mesh.owned());
   return std::exchange(cover_.boxes, {});
 }
@@ -88,7 +90,7 @@ void PointSearch::add(const CouplingSetup& setup, collide::OwnerId from,
 
 void PointSearch::list_outside(TransferKind kind) {
   for (std::size_t v = 0; v < best_.size(); ++v)
-    if (kind == TransferKind::nearest || best_[v].candidate.status == Status::outside) {
+    if (kind == TransferKind::nearest || fits_ || best_[v].candidate.status == Status::outside) {
       to_ask_.push_back(static_cast<std::uint32_t>(nearest_.size()));
       nearest_.push_back({.row = static_cast<std::uint32_t>(v)});
     }
@@ -121,6 +123,7 @@ Addressed<SearchQuery> PointSearch::nearest_queries(CouplingId id, const MeshVie
     if (next == NearestParts::none || next.squared_distance > so_far.squared_distance) return true;
     so_far.asked = next;
     NearestQuery& query = queries[sources_[static_cast<std::size_t>(next.number)]];
+    if (fits_) query.n_nearest = static_cast<std::uint32_t>(fits_->n_wanted());
     query.keys.push_back(key);
     query.points.push_back(point);
     query.squared_reaches.push_back(so_far.squared_distance);
@@ -136,8 +139,12 @@ void PointSearch::add(collide::OwnerId from, const NearestAnswer& answer) {
   for (std::size_t i = 0; i < answer.keys.size(); ++i) {
     NearestSoFar& mine = nearest_[answer.keys[i]];
     const double d = answer.squared_distances[i];
-    if (answer.vertices[i] < 0 || d > mine.squared_distance ||
-        (d == mine.squared_distance && answer.ids[i] >= mine.id))
+    if (fits_) {
+      mine.squared_distance = fits_->add(answer.keys[i], {d, answer.ids[i], answer.vertices[i]},
+                                         answer.points[i], from);
+      continue;
+    }
+    if (d > mine.squared_distance || (d == mine.squared_distance && answer.ids[i] >= mine.id))
       continue;
     mine.squared_distance = d;
     mine.id = answer.ids[i];
@@ -148,6 +155,7 @@ void PointSearch::add(collide::OwnerId from, const NearestAnswer& answer) {
 
 Addressed<Choice> PointSearch::choices(const CouplingSetup& setup, const MeshView& mesh,
                                        TargetFound& found) {
+  if (fits_) return fit_choices(setup.id, mesh, found);
   found.status.resize(best_.size());
   found.distance.resize(best_.size());
   std::map<collide::OwnerId, std::vector<std::uint32_t>> rows;
@@ -193,6 +201,14 @@ Addressed<Choice> PointSearch::choices(const CouplingSetup& setup, const MeshVie
     choice.coupling = setup.id;
     out.emplace_back(source, std::move(choice));
   }
+  return out;
+}
+
+Addressed<Choice> PointSearch::fit_choices(CouplingId id, const MeshView& mesh,
+                                           TargetFound& found) const {
+  Addressed<Choice> out;
+  for (auto& [source, vertices] : fits_->finish(mesh.owned(), found))
+    out.emplace_back(source, Choice{id, {}, {}, std::move(vertices)});
   return out;
 }
 

@@ -2,6 +2,7 @@
 // vertices that are nearest to points outside.
 #pragma once
 
+#include "m2m/couple/point_fits.hpp"
 #include "m2m/couple/search_step.hpp"
 #include "m2m/mesh_view.hpp"
 #include "m2m/rows/search/cover.hpp"
@@ -10,6 +11,7 @@
 #include <cstdint>
 #include <limits>
 #include <map>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -18,7 +20,7 @@ namespace tess::m2m {
 class PointSearch {
  public:
   /// Starts, and returns boxes around the points.
-  [[nodiscard]] std::vector<Aabb> start(const MeshView& mesh);
+  [[nodiscard]] std::vector<Aabb> start(const CouplingSetup& setup, const MeshView& mesh);
   void add(const collide::Hits& hits);
   /// When all answers to the last step are here. `found` is filled in at the end.
   [[nodiscard]] SearchStep next(const CouplingSetup& setup, const MeshView& mesh,
@@ -31,7 +33,7 @@ class PointSearch {
   template <class Ar>
   void serialize(Ar& ar) {
     ar(stage_, cover_, asked_, best_, nearest_, to_ask_, nearest_parts_, sources_,
-       source_has_points_);
+       source_has_points_, fits_);
   }
 
  private:
@@ -63,6 +65,8 @@ class PointSearch {
 
   [[nodiscard]] Addressed<SearchQuery> point_queries(CouplingId id, const MeshView& mesh);
   void list_outside(TransferKind kind);
+  [[nodiscard]] Addressed<Choice> fit_choices(CouplingId id, const MeshView& mesh,
+                                              TargetFound& found) const;
   /// The next queries for points that need a nearest vertex; none if all are answered.
   [[nodiscard]] Addressed<SearchQuery> nearest_queries(CouplingId id, const MeshView& mesh);
   /// What each source piece that was asked shall send.
@@ -78,6 +82,7 @@ class PointSearch {
   NearestParts nearest_parts_;
   std::vector<collide::OwnerId> sources_;  // of the parts in nearest_parts_
   bool source_has_points_ = false;         // any of these pieces has
+  std::optional<PointFits> fits_;          // of moving least squares: by the keys of nearest_
 };
 
 }  // namespace tess::m2m

@@ -1,5 +1,6 @@
-// What the searches of a target piece (PointSearch, OverlapSearch) send, and what they find. A search
-// is a chain of steps: each one follows when all answers to the one before are here.
+// What the searches of a target piece (PointSearch, OverlapSearch, TransposedSearch) send, and what
+// they find. A search is a chain of steps: each one follows when all answers to the one before are
+// here.
 #pragma once
 
 #include "m2m/couple/given_places.hpp"
@@ -20,13 +21,14 @@ struct SearchStep {
   Then then = Then::answers;
   Addressed<SearchQuery> queries{};
   Addressed<Choice> choices{};
-  std::vector<collide::OwnerId> greetings{};
+  Addressed<SearchAnswer> beside{};  ///< to other pieces of the target
 };
 
 /// What a search finds for a target piece; it is kept for applications.
 struct TargetFound {
-  std::vector<Status> status{};    ///< per place; `snapped` stands for covered in part, too
-  std::vector<double> distance{};  ///< per point that the piece owns; empty: conservative kinds
+  std::vector<Status> status{};  ///< per place; `snapped` stands for covered in part, too
+  /// Per point that the piece owns; empty: conservative kinds, transposed couplings.
+  std::vector<double> distance{};
   Tally tally{};
   WorstPlaces worst{};
   GivenPlaces given{};

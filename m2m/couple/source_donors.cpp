@@ -62,17 +62,28 @@ DonorAnswer SourceSide::answer_points(collide::OwnerId target, BestDonors found)
   return {std::move(found.points), std::move(found.candidates)};
 }
 
-NearestAnswer SourceSide::answer_nearest(const MeshView& mesh, NearestQuery query) {
+NearestAnswer SourceSide::answer_nearest(const MeshView& mesh, const NearestQuery& query) {
   if (!nearest_)
     nearest_.emplace(mesh.owned(), mesh.point_ids.first(mesh.owned().size()),
                      points_of_nearest(mesh));
-  NearestAnswer answer{std::move(query.keys), {}, {}, {}};
-  for (std::size_t i = 0; i < answer.keys.size(); ++i) {
-    const NearestVertex::Answer found = nearest_->find(query.points[i], query.squared_reaches[i]);
-    answer.squared_distances.push_back(found.squared_distance);
-    answer.vertices.push_back(found.vertex);
-    answer.ids.push_back(found.vertex < 0 ? -1
-                                          : mesh.point_ids[static_cast<std::size_t>(found.vertex)]);
+  NearestAnswer answer;
+  const auto add = [&](std::size_t i, double squared_distance, VertexId vertex) {
+    answer.keys.push_back(query.keys[i]);
+    answer.squared_distances.push_back(squared_distance);
+    answer.vertices.push_back(vertex);
+    answer.ids.push_back(mesh.point_ids[static_cast<std::size_t>(vertex)]);
+    if (query.n_nearest > 1) answer.points.push_back(mesh.points[static_cast<std::size_t>(vertex)]);
+  };
+  std::vector<NearestVertex::Neighbour> several;
+  for (std::size_t i = 0; i < query.keys.size(); ++i) {
+    if (query.n_nearest > 1) {
+      nearest_->find(query.points[i], query.n_nearest, query.squared_reaches[i], several);
+      for (const NearestVertex::Neighbour& found : several)
+        add(i, found.squared_distance, found.vertex);
+    } else if (const auto found = nearest_->find(query.points[i], query.squared_reaches[i]);
+               found.vertex >= 0) {
+      add(i, found.squared_distance, found.vertex);
+    }
   }
   return answer;
 }

@@ -17,7 +17,8 @@ std::vector<Aabb> SourceSide::start_search(const MeshView& mesh) {
   stays_ = same_.ask(mesh);
   if (stays_ == SameMesh::Answer::same) return cover_.boxes;
   nearest_.reset();
-  cover_ = cover_tets(mesh.points, mesh.own_tets(), setup.tolerance);
+  cover_ = {};
+  if (setup.collides()) cover_ = cover_tets(mesh.points, mesh.own_tets(), setup.tolerance);
   return cover_.boxes;
 }
 
@@ -45,8 +46,8 @@ Addressed<SearchAnswer> SourceSide::answers(const MeshView& mesh, std::uint64_t&
     auto& what = out.back().second.what;
     if (const auto* tets = std::get_if<TargetTets>(&query.what))
       what = answer_overlaps(mesh, query.from, *tets, n_tested);
-    else if (auto* of_nearest = std::get_if<NearestQuery>(&query.what))
-      what = answer_nearest(mesh, std::move(*of_nearest));
+    else if (const auto* of_nearest = std::get_if<NearestQuery>(&query.what))
+      what = answer_nearest(mesh, *of_nearest);
     else
       what = answer_points(query.from, std::move(*next++));
   }
@@ -59,6 +60,8 @@ Addressed<SearchAnswer> SourceSide::choose(const MeshView& mesh, Choice choice) 
     attached_.push_back(choice.from);
   else if (setup.is_conservative())
     out.emplace_back(choice.from, SearchAnswer{setup.id, {}, choose_rows(mesh, choice)});
+  else if (setup.applies_at_target())
+    given_[choice.from].sent = std::move(choice.vertices);
   else
     choose_donors(choice);
   return out;
@@ -87,7 +90,7 @@ void SourceSide::give(const MeshView& mesh, std::span<const double> values, deta
                              {},
                              take,
                              round,
-                             setup.is_conservative()
+                             setup.applies_at_target()
                                  ? loads(given, values, n_components)
                                  : interpolate(mesh, given.donors, values, slopes, n_components)});
 }

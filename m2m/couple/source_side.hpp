@@ -65,7 +65,7 @@ class SourceSide {
   struct Given {
     std::vector<Donor> donors{};
     Rows<double> rows{};
-    std::vector<VertexId> sent{};  // unknowns whose values are sent, too
+    std::vector<VertexId> sent{};  // unknowns whose raw values are sent, too
     template <class Ar>
     void serialize(Ar& ar) {
       ar(donors, rows, sent);
@@ -73,7 +73,7 @@ class SourceSide {
   };
 
   [[nodiscard]] DonorAnswer answer_points(collide::OwnerId target, BestDonors found);
-  [[nodiscard]] NearestAnswer answer_nearest(const MeshView& mesh, NearestQuery query);
+  [[nodiscard]] NearestAnswer answer_nearest(const MeshView& mesh, const NearestQuery& query);
   [[nodiscard]] OverlapAnswer answer_overlaps(const MeshView& mesh, collide::OwnerId target,
                                               const TargetTets& tets, std::uint64_t& n_tested);
   void choose_donors(const Choice& choice);

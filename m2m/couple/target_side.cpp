@@ -8,18 +8,29 @@
 
 namespace tess::m2m {
 
-std::vector<Aabb> TargetSide::start_search(const MeshView& mesh) {
+void TargetSide::forget() {
   n_open_ = 0;
   found_ = {};
   least_source_.reset();
   neighbours_.clear();
   channels_.clear();
-  if (!setup.is_conservative()) return search_.emplace<PointSearch>().start(mesh);
+}
+
+std::vector<Aabb> TargetSide::start_search(const MeshView& mesh) {
+  forget();
+  if (!setup.is_conservative()) return search_.emplace<PointSearch>().start(setup, mesh);
   return search_.emplace<OverlapSearch>(setup.target_values).start(mesh);
+}
+
+void TargetSide::start_search(Addressed<Rows<double>> rows) {
+  forget();
+  search_.emplace<TransposedSearch>(std::move(rows));
 }
 
 std::vector<PointReport> TargetSide::point_reports(const MeshView& mesh,
                                                    collide::OwnerId me) const {
+  if (const auto* transposed = std::get_if<TransposedSearch>(&search_))
+    return transposed->point_reports(mesh, me);
   return std::get<OverlapSearch>(search_).point_reports(mesh, me);
 }
 
@@ -31,6 +42,10 @@ void TargetSide::add(const collide::Hits& hits) {
 }
 
 bool TargetSide::add(SearchAnswer answer) {
+  if (auto* transposed = std::get_if<TransposedSearch>(&search_)) {
+    transposed->add(std::move(answer));
+    return false;  // the handle says when all have come
+  }
   if (const auto* shared = std::get_if<SharedPoints>(&answer.what)) {
     for (const SharedPoint& point : shared->points) {
       Neighbour& neighbour = neighbours_[point.other];
@@ -67,13 +82,15 @@ SearchStep TargetSide::next_step(const MeshView& mesh) {
   if (auto* points = std::get_if<PointSearch>(&search_)) step = points->next(setup, mesh, found_);
   if (auto* overlaps = std::get_if<OverlapSearch>(&search_))
     step = overlaps->next(setup, mesh, found_);
+  if (auto* transposed = std::get_if<TransposedSearch>(&search_))
+    step = transposed->next(setup, mesh, found_);
   if (step.then == SearchStep::Then::answers) n_open_ = step.queries.size() + step.choices.size();
   if (step.then == SearchStep::Then::nothing) {
     search_ = {};
     for (auto& [piece, neighbour] : neighbours_) {
       std::sort(neighbour.owned.begin(), neighbour.owned.end());
       std::sort(neighbour.ghosts.begin(), neighbour.ghosts.end());
-      if (n_sources() > 0) step.greetings.push_back(piece);
+      if (n_sources() > 0) step.beside.emplace_back(piece, SearchAnswer{setup.id, {}, Greeting{}});
     }
   }
   if (std::holds_alternative<std::monostate>(search_) && n_sources() == 0 && least_source_)
@@ -96,7 +113,7 @@ bool TargetSide::advance(detail::Taker take,
     take_ghosts(channel);
   } else {
     if (!channel.given.has_next(n_sources())) return false;
-    if (!setup.is_conservative()) return true;
+    if (!setup.applies_at_target()) return true;
     start_round(channel);
     if (!setup.has_projection()) return true;
   }
@@ -121,11 +138,16 @@ std::size_t TargetSide::n_ghost_messages() const {
 }
 
 void TargetSide::start_round(Channel& channel) {
-  GivenPlaces::Sums loads = found_.given.add_up(channel.given.take(), found_.status.size(),
-                                                setup.kind == TransferKind::conservative_bounded);
+  const bool keeps_range = setup.fits() && setup.clamp;
+  GivenPlaces::Sums loads =
+      found_.given.add_up(channel.given.take(), found_.status.size(),
+                          keeps_range || setup.kind == TransferKind::conservative_bounded);
+  for (std::size_t i = 0; keeps_range && i < loads.values.size(); ++i)
+    if (const ValueRange& range = loads.ranges[i]; range.low <= range.high)
+      loads.values[i] = std::clamp(loads.values[i], range.low, range.high);
   const std::size_t n = loads.n_components;
   for (const double load : loads.values)
-    if (std::isinf(load))
+    if (setup.is_conservative() && std::isinf(load))
       fail(ErrorCode::bad_value, "an integral of a ", name_of(setup.kind),
            " transfer is infinite: a value is, or a value times a volume is above 1e308; scale the "
            "field or the meshes");
@@ -175,7 +197,7 @@ void TargetSide::take_ghosts(Channel& channel) {
 
 void TargetSide::write(std::uint64_t channel_id, std::span<double> values) {
   Channel& channel = channels_.at(channel_id);
-  if (setup.is_conservative())
+  if (setup.applies_at_target())
     write_result(channel.result, values);
   else
     write_given(channel.given.take(), values);

@@ -8,6 +8,7 @@
 #include "m2m/couple/overlap_search.hpp"
 #include "m2m/couple/point_search.hpp"
 #include "m2m/couple/rounds.hpp"
+#include "m2m/couple/transposed_search.hpp"
 #include "m2m/rows/conservative/projection.hpp"
 
 #include <cstdint>
@@ -27,7 +28,10 @@ class TargetSide {
 
   /// Forgets the last search, and returns boxes around what gets values.
   [[nodiscard]] std::vector<Aabb> start_search(const MeshView& mesh);
-  /// What the piece reports of its points if there is a projection; `me`: the piece.
+  /// The same for a transposed coupling. `rows`: of the donors that the piece holds, per piece that
+  /// they give values.
+  void start_search(Addressed<Rows<double>> rows);
+  /// What the piece reports of its points if there is a directory; `me`: the piece.
   [[nodiscard]] std::vector<PointReport> point_reports(const MeshView& mesh,
                                                        collide::OwnerId me) const;
   void add(const collide::Hits& hits);
@@ -81,6 +85,7 @@ class TargetSide {
     }
   };
 
+  void forget();
   [[nodiscard]] std::size_t n_ghost_messages() const;
   void start_round(Channel& channel);
   void send_owned(Channel& channel, detail::Taker take,
@@ -89,8 +94,9 @@ class TargetSide {
   void write_given(const std::vector<GivenValues>& messages, std::span<double> to) const;
   void write_result(const std::vector<double>& result, std::span<double> to) const;
 
-  std::variant<std::monostate, PointSearch, OverlapSearch> search_;  // under way
-  std::size_t n_open_ = 0;                                           // answers
+  // under way
+  std::variant<std::monostate, PointSearch, OverlapSearch, TransposedSearch> search_;
+  std::size_t n_open_ = 0;  // answers
   TargetFound found_;
   std::optional<collide::OwnerId> least_source_;  // of all, if the piece was told
   std::map<collide::OwnerId, Neighbour> neighbours_;

@@ -14,6 +14,8 @@ const char* name_of(TransferKind kind) noexcept {
       return "limited";
     case TransferKind::nearest:
       return "nearest";
+    case TransferKind::moving_least_squares:
+      return "moving-least-squares";
     case TransferKind::conservative:
       return "conservative";
     case TransferKind::conservative_bounded:

@@ -59,10 +59,9 @@ void NearestVertex::build(std::int32_t first, std::int32_t last) {
   build(middle, last);
 }
 
-NearestVertex::Answer NearestVertex::find(const Point& p, double squared_reach) const {
-  Answer best{-1, squared_reach};
-  GlobalId best_id = std::numeric_limits<GlobalId>::max();
-  if (nodes_.empty()) return best;
+template <class See>
+void NearestVertex::visit(const Point& p, const double& squared_reach, const See& see) const {
+  if (nodes_.empty()) return;
   struct Pending {
     std::int32_t node;
     double squared_distance;
@@ -72,17 +71,11 @@ NearestVertex::Answer NearestVertex::find(const Point& p, double squared_reach) 
   stack[n++] = {0, squared_distance(p, nodes_[0].box)};
   while (n > 0) {
     Pending next = stack[--n];
-    while (next.squared_distance <= best.squared_distance) {
+    while (next.squared_distance <= squared_reach) {
       const Node& node = nodes_[at(next.node)];
       if (node.second < 0) {
-        for (std::int32_t i = node.first; i < node.last; ++i) {
-          const double squared = squared_distance(p, points_[at(i)]);
-          const bool first = ids_[at(i)] < best_id;
-          if (squared < best.squared_distance || (squared == best.squared_distance && first)) {
-            best = {vertices_[at(i)], squared};
-            best_id = ids_[at(i)];
-          }
-        }
+        for (std::int32_t i = node.first; i < node.last; ++i)
+          see(at(i), squared_distance(p, points_[at(i)]));
         break;
       }
       Pending near{next.node + 1, squared_distance(p, nodes_[at(next.node + 1)].box)};
@@ -92,7 +85,38 @@ NearestVertex::Answer NearestVertex::find(const Point& p, double squared_reach) 
       next = near;
     }
   }
+}
+
+NearestVertex::Answer NearestVertex::find(const Point& p, double squared_reach) const {
+  Answer best{-1, squared_reach};
+  GlobalId best_id = std::numeric_limits<GlobalId>::max();
+  visit(p, best.squared_distance, [&](std::size_t i, double squared) {
+    const bool first = ids_[i] < best_id;
+    if (squared < best.squared_distance || (squared == best.squared_distance && first)) {
+      best = {vertices_[i], squared};
+      best_id = ids_[i];
+    }
+  });
   return best;
+}
+
+void NearestVertex::find(const Point& p, std::size_t n, double squared_reach,
+                         std::vector<Neighbour>& out) const {
+  out.clear();  // a heap, the farthest first
+  visit(p, squared_reach, [&](std::size_t i, double squared) {
+    if (squared > squared_reach) return;
+    const Neighbour mine{squared, ids_[i], vertices_[i]};
+    if (out.size() == n) {
+      if (!(mine < out.front())) return;
+      std::pop_heap(out.begin(), out.end());
+      out.back() = mine;
+    } else {
+      out.push_back(mine);
+    }
+    std::push_heap(out.begin(), out.end());
+    if (out.size() == n) squared_reach = out.front().squared_distance;
+  });
+  std::sort_heap(out.begin(), out.end());
 }
 
 }  // namespace tess::m2m

@@ -42,6 +42,17 @@ class NearestVertex {
   NearestVertex(std::span<const Point> points, std::span<const GlobalId> ids,
                 std::vector<std::int32_t> vertices);
 
+  /// A vertex near a point. They are ordered by distance, then by id.
+  struct Neighbour {
+    double squared_distance = 0;
+    GlobalId id = 0;
+    std::int32_t vertex = -1;
+    friend auto operator<=>(const Neighbour&, const Neighbour&) = default;
+  };
+
+  /// The `n` vertices nearest to `p` within the reach (inclusive), ascending; fewer if there are no
+  /// more. `out` is overwritten.
+  void find(const Point& p, std::size_t n, double squared_reach, std::vector<Neighbour>& out) const;
   /// The vertex nearest to `p` within the reach (inclusive); vertex -1 if there is none.
   [[nodiscard]] Answer find(const Point& p,
                             double squared_reach = std::numeric_limits<double>::infinity()) const;
@@ -54,6 +65,10 @@ class NearestVertex {
     std::int32_t second = -1;  // second child, -1 in a leaf; the first child follows its parent
   };
   void build(std::int32_t first, std::int32_t last);
+  /// Calls see(position in the tree's order, squared distance) for vertices within the reach, which
+  /// it may shorten, and others near these.
+  template <class See>
+  void visit(const Point& p, const double& squared_reach, const See& see) const;
 
   std::vector<Point> points_;           // in the tree's order
   std::vector<std::int32_t> vertices_;  // their indices

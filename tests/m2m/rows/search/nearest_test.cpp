@@ -58,6 +58,30 @@ TEST_CASE("the nearest vertex is that of brute force, and ties go to the lowest"
   CHECK(NearestVertex({}).find({0, 0, 0}).vertex == -1);
 }
 
+TEST_CASE("the nearest vertices are those of brute force, in the order of (distance, id)",
+          "[m2m][nearest]") {
+  const TetMesh mesh = kuhn_mesh({4});  // a lattice: many are equally near
+  const NearestVertex nearest(mesh.points);
+  std::vector<NearestVertex::Neighbour> all, found;
+  for (const Point& p : queries()) {
+    all.clear();
+    for (std::size_t v = 0; v < mesh.n_points(); ++v)
+      all.push_back({squared_distance(p, mesh.points[v]), static_cast<GlobalId>(v),
+                     static_cast<std::int32_t>(v)});
+    std::sort(all.begin(), all.end());
+    for (const std::size_t n : {std::size_t{1}, std::size_t{12}, all.size() + 5}) {
+      nearest.find(p, n, INFINITY, found);
+      const std::size_t n_found = std::min(n, all.size());
+      if (!std::ranges::equal(found, std::span(all).first(n_found))) FAIL("not the nearest " << n);
+      nearest.find(p, n, std::nextafter(all[0].squared_distance, -1), found);
+      if (!found.empty()) FAIL("beyond reach");
+      nearest.find(p, n, all[0].squared_distance, found);
+      if (found.empty() || found.back().squared_distance != all[0].squared_distance)
+        FAIL("within reach");
+    }
+  }
+}
+
 TEST_CASE("of equally near vertices the lowest id is found, whatever their order",
           "[m2m][nearest]") {
   const TetMesh mesh = kuhn_mesh({6});
