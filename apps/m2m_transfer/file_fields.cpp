@@ -2,13 +2,13 @@
 
 #include "apps/kit/output/write_file.hpp"
 #include "apps/kit/rows.hpp"
+#include "apps/m2m_transfer/input/part.hpp"
 #include "apps/m2m_transfer/output/found.hpp"
 #include "apps/m2m_transfer/result_format.hpp"
 #include "m2m/cell_transfer.hpp"
 #include "m2m/count_nan.hpp"
 #include "m2m/coupling_weights.hpp"
 #include "m2m/field_file.hpp"
-#include "m2m/read_mesh.hpp"
 #include "m2m/transfer.hpp"
 #include "m2m/weights_file.hpp"
 #include "m2m/write_exodus.hpp"
@@ -48,8 +48,8 @@ bool is_formula(const std::string& name) {
 /// The fields of the source, read or sampled one step at a time.
 class SourceFields {
  public:
-  SourceFields(const FileFieldsRequest& request, const TetMesh& mesh)
-      : mesh_(mesh), names_(split_names(request.fields)) {
+  SourceFields(const FileFieldsRequest& request, const ReadPart& source)
+      : source_(source), names_(split_names(request.fields)) {
     if (!request.source.starts_with("kuhn:")) file_.emplace(request.source);
     bool from_file = false;
     for (const std::string& name : names_) {
@@ -76,9 +76,8 @@ class SourceFields {
     std::vector<Field> fields;
     for (std::size_t f = 0; f < names_.size(); ++f) {
       if (places_[f] != place) continue;
-      fields.push_back(formulas_[f]                    ? sample(mesh_, names_[f], *formulas_[f])
-                       : place == FieldPlace::vertices ? file_->vertex_field(mesh_, names_[f], step)
-                                                       : file_->tet_field(mesh_, names_[f], step));
+      fields.push_back(formulas_[f] ? sample(source_.mesh(), names_[f], *formulas_[f])
+                                    : from_file(names_[f], place, step));
     }
     return fields;
   }
@@ -87,11 +86,20 @@ class SourceFields {
   }
 
  private:
+  [[nodiscard]] Field from_file(const std::string& name, FieldPlace place, std::size_t step) const {
+    const std::optional<SurfaceMesh>& part = source_.part;
+    if (place == FieldPlace::vertices) {
+      Field field = file_->vertex_field(source_.whole, name, step);
+      return part ? rows_of(field, part->vertex_of_point) : field;
+    }
+    Field field = file_->tet_field(source_.whole, name, step);
+    return part ? rows_of(field, part->tet_of_cell) : field;
+  }
   /// A name that is neither is refused with what the file has.
   [[nodiscard]] std::optional<Formula> formula_of(const std::string& name) const {
     if (!is_formula(name) && file_ && !file_->fields().empty())
-      (void)file_->vertex_field(mesh_, name, 0);
-    return make_formula(name, bounds(mesh_));
+      (void)file_->vertex_field(source_.whole, name, 0);
+    return make_formula(name, bounds(source_.mesh()));
   }
   void choose_steps(const std::string& text) {
     const std::size_t n = file_->n_steps();
@@ -107,7 +115,7 @@ class SourceFields {
     steps_ = {*step};
   }
 
-  const TetMesh& mesh_;
+  const ReadPart& source_;
   std::vector<std::string> names_;
   std::optional<FieldFile> file_;
   std::vector<FieldPlace> places_;
@@ -173,7 +181,7 @@ class ResultFile {
 
 struct Run {
   const FileFieldsRequest& request;
-  TetMesh source, target;
+  const TetMesh &source, &target;
   TransferOptions options{};
   WeightMatrix matrix{};
   std::vector<Status> status{};  // after a search
@@ -316,7 +324,9 @@ TaskOf<FileFieldsReport> move_file_fields(const FileFieldsRequest& request,
   check_options(request);
   FileFieldsReport report;
   progress.phase("reading");
-  Run run{request, read_mesh(request.source), read_mesh(request.target)};
+  const ReadPart source = read_part(request.source, request.source_part);
+  const ReadPart target = read_part(request.target, request.target_part);
+  Run run{request, source.mesh(), target.mesh()};
   run.options.policy = parse_policy(request.policy);
   run.options.kind = parse_transfer_kind(request.kind);
   run.options.tolerance = request.tolerance;
@@ -326,8 +336,8 @@ TaskOf<FileFieldsReport> move_file_fields(const FileFieldsRequest& request,
     progress.phase(name);
   };
   run.options.on_phase = &on_phase;
-  report.source = request.source;
-  report.target = request.target;
+  report.source = run.source.name;
+  report.target = run.target.name;
   const auto elements_of = [](const TetMesh& mesh) -> OtherElements {
     return {.skipped = skipped_text(mesh),
             .split = split_text(mesh),
@@ -336,9 +346,9 @@ TaskOf<FileFieldsReport> move_file_fields(const FileFieldsRequest& request,
   report.source_elements = elements_of(run.source);
   report.target_elements = elements_of(run.target);
   report.source_elements.repeated = repeated_text(run.source);
-  if (request.source == request.target)
+  if (report.source == report.target)
     report.source_elements.coincident = coincident_text(run.source);
-  const SourceFields fields(request, run.source);
+  const SourceFields fields(request, source);
   if (is_vtu(request.out) && fields.steps().size() > 1)
     fail(ErrorCode::bad_argument, "--out ", request.out, ": VTU holds one step, and there are ",
          fields.steps().size(), "; give a file that ends in .exo, or one --step");
