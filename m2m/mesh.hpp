@@ -94,20 +94,20 @@ struct TetMesh {
 
 /// Properties of a valid mesh that are worth a report.
 struct MeshCensus {
-  std::size_t n_flat = 0;      ///< tetrahedra without volume, for example with two equal vertices
+  std::size_t n_flat = 0;      ///< cells without measure(), for example with two equal vertices
   std::size_t n_inverted = 0;  ///< tetrahedra of negative orientation
   std::size_t n_unused = 0;    ///< vertices that no tetrahedron uses
   Aabb bounds{};               ///< of all points
 };
 
 /// Throws Error (bad_mesh) with the mesh, the element and the remedy if
-///   - the mesh has no tetrahedra,
+///   - the mesh has no tetrahedra, or cells that are not of its dimension,
 ///   - a coordinate is not finite or exceeds 1e100,
 ///   - an index is out of range, also in a block or set,
 ///   - more than a tenth of the tetrahedra are shorter than 64 ulps of their coordinates (their
 ///     shape is rounding error, and points snap within 4 ulps) or shorter than 1e-80 (their volumes
 ///     underflow),
-///   - no tetrahedron has a volume.
+///   - no tetrahedron has a volume, no triangle an area, or no edge a length.
 /// Single flat, tiny or inverted tetrahedra are allowed; flat and inverted ones are counted.
 MeshCensus validate(const TetMesh& mesh);
 
@@ -137,6 +137,21 @@ MeshCensus validate(const TetMesh& mesh);
 /// cancel far from the origin.)
 [[nodiscard]] double signed_volume(const TetMesh& mesh, std::size_t tet);
 [[nodiscard]] double signed_volume(const std::array<Point, 4>& corners);
+/// The size of a cell of this dimension, never negative: the volume of a tetrahedron, the area of a
+/// triangle, or the length of an edge.
+[[nodiscard]] double measure(const std::array<Point, 4>& corners, std::int32_t dimension);
+
+/// For messages: the cells of this dimension, "tetrahedra", "triangles" or "edges".
+[[nodiscard]] constexpr const char* cells_of(std::int32_t dimension) noexcept {
+  return dimension == 3 ? "tetrahedra" : dimension == 2 ? "triangles" : "edges";
+}
+[[nodiscard]] constexpr const char* cell_of(std::int32_t dimension) noexcept {
+  return dimension == 3 ? "tetrahedron" : dimension == 2 ? "triangle" : "edge";
+}
+/// True if the cell repeats its last vertex as the dimension asks: (a, b, c, c) or (a, b, b, b).
+[[nodiscard]] constexpr bool has_dimension(const Tet& cell, std::int32_t dimension) noexcept {
+  return dimension == 3 || (cell[3] == cell[2] && (dimension == 2 || cell[2] == cell[1]));
+}
 
 /// The mean of the corners.
 [[nodiscard]] inline Point mean_of_corners(const std::array<Point, 4>& corners) {

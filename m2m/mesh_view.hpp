@@ -34,7 +34,8 @@ struct MeshView {
 };
 
 /// Throws Error (bad_mesh) with the first point, index or list that cannot be used: coordinates
-/// must be finite and at most 1e100, corners in range, and ids as many as points and tetrahedra.
+/// must be finite and at most 1e100, corners in range, cells of the dimension, and ids as many as
+/// points and cells.
 void validate(const MeshView& mesh);
 
 }  // namespace tess::m2m

@@ -60,7 +60,7 @@ struct MeshSurvey {
   GlobalId n_points = 0, n_tets = 0;
   MeshCensus census{};
   double longest_edge = 0;
-  double volume = 0;               ///< of all tetrahedra, the same bits for any number of PEs
+  double volume = 0;               ///< sum of measure(), the same bits for any number of PEs
   std::string skipped{}, split{};  ///< as skipped_text() and split_text()
 };
 

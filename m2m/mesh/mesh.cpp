@@ -3,6 +3,7 @@
 #include "runtime/core/text.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 
 namespace tess::m2m {
@@ -26,6 +27,14 @@ double signed_volume(const std::array<Point, 4>& corners) {
   const double bx = corners[2][0] - x, by = corners[2][1] - y, bz = corners[2][2] - z;
   const double cx = corners[3][0] - x, cy = corners[3][1] - y, cz = corners[3][2] - z;
   return (ax * (by * cz - bz * cy) + ay * (bz * cx - bx * cz) + az * (bx * cy - by * cx)) / 6.0;
+}
+
+double measure(const std::array<Point, 4>& corners, std::int32_t dimension) {
+  if (dimension == 3) return std::abs(signed_volume(corners));
+  const Point along = difference(corners[1], corners[0]);
+  if (dimension == 1) return std::hypot(along[0], along[1], along[2]);
+  const Point normal = cross(along, difference(corners[2], corners[0]));
+  return std::hypot(normal[0], normal[1], normal[2]) / 2;
 }
 
 std::string skipped_text(const TetMesh& mesh) {
@@ -83,7 +92,8 @@ std::string coincident_text(const TetMesh& mesh) {
 std::string repeated_text(const TetMesh& mesh) {
   std::vector<Tet> tets = mesh.tets;
   for (Tet& tet : tets) std::sort(tet.begin(), tet.end());
-  return equals_text(std::move(tets), " tetrahedra have the corners of another");
+  return equals_text(std::move(tets),
+                     text(" ", cells_of(mesh.dimension), " have the corners of another").c_str());
 }
 
 }  // namespace tess::m2m

@@ -159,7 +159,8 @@ TaskOf<PlacedMesh> place_ranges(PlacerSetup setup, const TetMesh* whole) {
     std::rethrow_exception(error);
   }
   placers.destroy();  // the Workers need not wait for it
-  placed.mesh = {setup.workers, setup.n_parts, setup.fields.size(), setup.halo_layers};
+  placed.mesh = {setup.workers, setup.n_parts, setup.fields.size(), setup.halo_layers,
+                 setup.dimension};
   placed.n_points = setup.n_points;
   placed.n_tets = setup.n_tets;
   co_return placed;
@@ -183,7 +184,8 @@ PlacerSetup setup_of(std::string shown_name, PlaceOptions options,
 
 /// Fills in the sizes of a mesh in memory.
 void take_sizes(const TetMesh& mesh, PlacerSetup& setup) {
-  refuse_bad_counts(mesh.name, mesh.n_points(), mesh.n_tets(), skipped_text(mesh));
+  refuse_bad_counts(mesh.name, mesh.n_points(), mesh.n_tets(), skipped_text(mesh), mesh.dimension);
+  setup.dimension = mesh.dimension;
   setup.n_points = static_cast<GlobalId>(mesh.n_points());
   setup.n_tets = static_cast<GlobalId>(mesh.n_tets());
 }
@@ -254,7 +256,7 @@ MeshSurvey survey(const TetMesh& mesh) {
   for (const Tet& tet : mesh.tets) {
     std::array<Point, 4> corners;
     for (std::size_t k = 0; k < 4; ++k) corners[k] = mesh.points[static_cast<std::size_t>(tet[k])];
-    extent.add(corners);
+    extent.add(corners, mesh.dimension);
   }
   out.longest_edge = std::sqrt(extent.longest_squared);
   out.volume = extent.volume.total();

@@ -6,7 +6,7 @@
 
 namespace tess::m2m {
 
-void MeshExtent::add(const std::array<Point, 4>& corners) {
+void MeshExtent::add(const std::array<Point, 4>& corners, std::int32_t dimension) {
   for (std::size_t i = 0; i < 4; ++i)
     for (std::size_t j = i + 1; j < 4; ++j) {
       double squared = 0;
@@ -16,7 +16,7 @@ void MeshExtent::add(const std::array<Point, 4>& corners) {
       }
       longest_squared = std::max(longest_squared, squared);
     }
-  volume.add(std::abs(signed_volume(corners)));
+  volume.add(measure(corners, dimension));
 }
 
 void MeshExtent::join(const MeshExtent& other) {

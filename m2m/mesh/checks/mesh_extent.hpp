@@ -1,4 +1,4 @@
-// The sizes of the tetrahedra of a mesh, over ranges of it that are joined in any order.
+// The sizes of the cells of a mesh, over ranges of it that are joined in any order.
 #pragma once
 
 #include "m2m/mesh.hpp"
@@ -10,9 +10,9 @@ namespace tess::m2m {
 
 struct MeshExtent {
   double longest_squared = 0;  ///< of all edges
-  ExactSum volume;             ///< without signs
+  ExactSum volume;             ///< the sum of measure()
 
-  void add(const std::array<Point, 4>& corners);
+  void add(const std::array<Point, 4>& corners, std::int32_t dimension);
   void join(const MeshExtent& other);
 
   template <class Ar>

@@ -1,6 +1,7 @@
 #include "m2m/mesh/checks/mesh_findings.hpp"
 
 #include "runtime/core/error.hpp"
+#include "runtime/core/text.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -31,6 +32,13 @@ void keep_first(Finding& a, const Finding& b, GlobalId Finding::*id) {
 
 }  // namespace
 
+std::string wrong_cell_text(GlobalId id, const Tet& cell, std::int32_t dimension) {
+  return text(cell_of(dimension), " ", id, " is (", cell[0], ", ", cell[1], ", ", cell[2], ", ",
+              cell[3], "), but ",
+              dimension == 2 ? "a triangle is (a, b, c, c)" : "an edge is (a, b, b, b)",
+              "; cells of each dimension make a mesh of their own");
+}
+
 void MeshFindings::add_points(GlobalId first, std::span<const Point> points) {
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Point& p = points[i];
@@ -41,14 +49,16 @@ void MeshFindings::add_points(GlobalId first, std::span<const Point> points) {
 }
 
 void MeshFindings::add_corners(GlobalId first, std::span<const Tet> tets, GlobalId n_points) {
-  for (std::size_t t = 0; t < tets.size(); ++t)
+  for (std::size_t t = 0; t < tets.size(); ++t) {
+    const GlobalId id = first + static_cast<GlobalId>(t);
     for (const VertexId v : tets[t])
-      if (v < 0 || v >= n_points)
-        keep_first(bad_corner, {first + static_cast<GlobalId>(t), v}, &BadCorner::tet);
+      if (v < 0 || v >= n_points) keep_first(bad_corner, {id, v}, &BadCorner::tet);
+    if (!has_dimension(tets[t], dimension)) keep_first(bad_cell, {id, tets[t]}, &BadCell::tet);
+  }
 }
 
 void MeshFindings::add_shape(GlobalId tet, const std::array<Point, 4>& corners) {
-  const double volume = signed_volume(corners);
+  const double volume = dimension == 3 ? signed_volume(corners) : measure(corners, dimension);
   n_flat += volume == 0 ? 1 : 0;
   n_inverted += volume < 0 ? 1 : 0;
   double longest = 0, largest = 0;  // per axis
@@ -70,6 +80,7 @@ void MeshFindings::add_shape(GlobalId tet, const std::array<Point, 4>& corners) 
 void MeshFindings::join(const MeshFindings& other) {
   keep_first(bad_point, other.bad_point, &BadPoint::point);
   keep_first(bad_corner, other.bad_corner, &BadCorner::tet);
+  keep_first(bad_cell, other.bad_cell, &BadCell::tet);
   keep_first(collapsed, other.collapsed, &Collapsed::tet);
   n_collapsed += other.n_collapsed;
   n_flat += other.n_flat;
@@ -86,14 +97,19 @@ void MeshFindings::refuse_bad_ids(const std::string& name, GlobalId n_points) co
          "; coordinates must be finite and at most 1e100: repair or rescale the mesh");
   }
   if (bad_corner.tet >= 0)
-    fail(ErrorCode::bad_mesh, shown(name), ": tetrahedron ", bad_corner.tet, " names vertex ",
-         bad_corner.corner, " (counted from 0) of ", n_points, " vertices; write the mesh again");
+    fail(ErrorCode::bad_mesh, shown(name), ": ", cell_of(dimension), " ", bad_corner.tet,
+         " names vertex ", bad_corner.corner, " (counted from 0) of ", n_points,
+         " vertices; write the mesh again");
+  if (bad_cell.tet >= 0)
+    fail(ErrorCode::bad_mesh, shown(name), ": ",
+         wrong_cell_text(bad_cell.tet, bad_cell.corners, dimension));
 }
 
 void MeshFindings::refuse_bad_shapes(const std::string& name, std::uint64_t n_tets) const {
   const auto refuse = [&](const auto&... reason) {
-    fail(ErrorCode::bad_mesh, shown(name), ": ", n_collapsed, " of ", n_tets,
-         " tetrahedra have collapsed: the first is ", collapsed.longest, " long", reason...);
+    fail(ErrorCode::bad_mesh, shown(name), ": ", n_collapsed, " of ", n_tets, " ",
+         cells_of(dimension), " have collapsed: the first is ", collapsed.longest, " long",
+         reason...);
   };
   if (n_collapsed > n_tets / 10) {
     if (collapsed.rounded != 0)
@@ -104,22 +120,31 @@ void MeshFindings::refuse_bad_shapes(const std::string& name, std::uint64_t n_te
            " have no volume in floating point; rescale the mesh");
   }
   if (n_flat == n_tets)
-    fail(
-        ErrorCode::bad_mesh, name,
-        ": no tetrahedron has a volume; give a mesh in three dimensions, written with more digits");
+    fail(ErrorCode::bad_mesh, name, ": no ", cell_of(dimension),
+         dimension == 3
+             ? " has a volume; give a mesh in three dimensions, or triangles with dimension 2,"
+         : dimension == 2 ? " has an area; give a surface"
+                          : " has a length; give a line",
+         " written with more digits");
 }
 
 void refuse_bad_counts(const std::string& name, std::uint64_t n_points, std::uint64_t n_tets,
-                       const std::string& others) {
+                       const std::string& others, std::int32_t dimension) {
+  if (dimension < 1 || dimension > 3)
+    fail(ErrorCode::bad_mesh, shown(name), ": has the dimension ", dimension,
+         "; choose 3 for tetrahedra, 2 for triangles or 1 for edges");
   if (n_tets == 0)
-    fail(ErrorCode::bad_mesh, shown(name), ": has no tetrahedra",
-         others.empty() ? "" : " (but " + others + ")", "; give a volume mesh");
+    fail(ErrorCode::bad_mesh, shown(name), ": has no ", cells_of(dimension),
+         others.empty() ? "" : " (but " + others + ")", "; give a ",
+         dimension == 3   ? "volume mesh"
+         : dimension == 2 ? "surface"
+                          : "line");
   if (n_points > static_cast<std::uint64_t>(std::numeric_limits<VertexId>::max()))
     fail(ErrorCode::bad_mesh, shown(name), ": has ", n_points,
          " vertices; at most 2147483647 fit in one mesh, split it");
   if (n_tets > static_cast<std::uint64_t>(std::numeric_limits<VertexId>::max()))
-    fail(ErrorCode::bad_mesh, shown(name), ": has ", n_tets,
-         " tetrahedra; at most 2147483647 fit in one mesh, split it");
+    fail(ErrorCode::bad_mesh, shown(name), ": has ", n_tets, " ", cells_of(dimension),
+         "; at most 2147483647 fit in one mesh, split it");
 }
 
 }  // namespace tess::m2m

@@ -30,8 +30,15 @@ struct MeshFindings {
     std::int32_t rounded = 0;  // or tiny
     std::int32_t unused = 0;
   };
-  BadPoint bad_point;  // the first one of each kind
+  /// A cell that is not of the mesh's dimension.
+  struct BadCell {
+    GlobalId tet = -1;
+    Tet corners{};
+  };
+  std::int32_t dimension = 3, unused = 0;  // of the mesh
+  BadPoint bad_point;                      // the first one of each kind
   BadCorner bad_corner;
+  BadCell bad_cell;
   Collapsed collapsed;
   std::uint64_t n_collapsed = 0, n_flat = 0, n_inverted = 0;
   Aabb bounds = collide::no_box<double, 3>();
@@ -43,15 +50,18 @@ struct MeshFindings {
   void add_shape(GlobalId tet, const std::array<Point, 4>& corners);
   void join(const MeshFindings& other);
 
-  /// Throws Error (bad_mesh) if a point or a corner cannot be used.
+  /// Throws Error (bad_mesh) if a point, a corner or a cell cannot be used.
   void refuse_bad_ids(const std::string& name, GlobalId n_points) const;
   /// Throws Error (bad_mesh) if too many tetrahedra have collapsed, or none has a volume.
   void refuse_bad_shapes(const std::string& name, std::uint64_t n_tets) const;
 };
 
-/// Throws Error (bad_mesh) for a mesh without tetrahedra or with too many vertices. `others`:
-/// skipped_text().
+/// For messages: "triangle 5 is (0, 1, 2, 3), but ...". `cell` is not of this dimension.
+[[nodiscard]] std::string wrong_cell_text(GlobalId id, const Tet& cell, std::int32_t dimension);
+
+/// Throws Error (bad_mesh) for a mesh without cells or with too many vertices, and for a dimension
+/// that is not 1, 2 or 3. `others`: skipped_text().
 void refuse_bad_counts(const std::string& name, std::uint64_t n_points, std::uint64_t n_tets,
-                       const std::string& others);
+                       const std::string& others, std::int32_t dimension = 3);
 
 }  // namespace tess::m2m

@@ -17,7 +17,7 @@ void validate_groups(const TetMesh& mesh) {
   for (const Block& block : mesh.blocks) n_in_blocks += block.n_tets;
   if (!mesh.blocks.empty() && n_in_blocks != mesh.n_tets())
     fail(ErrorCode::bad_mesh, mesh.name, ": its blocks have ", n_in_blocks, " of ", mesh.n_tets(),
-         " tetrahedra; list blocks for all tetrahedra, or none");
+         " ", cells_of(mesh.dimension), "; list blocks for all of them, or none");
   for (const SideSet& set : mesh.side_sets) {
     for (const Side& side : set.entries) {
       if (side.tet < 0 || side.tet >= static_cast<GlobalId>(mesh.n_tets()) || side.side < 1 ||
@@ -59,9 +59,10 @@ void require_unique(std::span<const GlobalId> ids, const char* what, const char*
 
 MeshCensus validate(const TetMesh& mesh) {
   const auto n = static_cast<GlobalId>(mesh.n_points());
-  refuse_bad_counts(mesh.name, mesh.n_points(), mesh.n_tets(), skipped_text(mesh));
+  refuse_bad_counts(mesh.name, mesh.n_points(), mesh.n_tets(), skipped_text(mesh), mesh.dimension);
   validate_groups(mesh);
   MeshFindings findings;
+  findings.dimension = mesh.dimension;
   findings.add_points(0, mesh.points);
   findings.add_corners(0, mesh.tets, n);
   findings.refuse_bad_ids(mesh.name, n);
@@ -83,7 +84,10 @@ void validate(const MeshView& mesh) {
     fail(ErrorCode::bad_mesh, "a piece of ", n, " points and ", mesh.tets.size(),
          " tetrahedra has ", mesh.point_ids.size(), " point_ids and ", mesh.tet_ids.size(),
          " tet_ids; give an id for each");
-  require_unique(mesh.tet_ids, "tetrahedra", "tet_ids");
+  if (mesh.dimension < 1 || mesh.dimension > 3)
+    fail(ErrorCode::bad_mesh, "a piece has the dimension ", mesh.dimension,
+         "; choose 3 for tetrahedra, 2 for triangles or 1 for edges");
+  require_unique(mesh.tet_ids, cells_of(mesh.dimension), "tet_ids");
   // Each search validates, so the passes that decide have no branch and are vectorised.
   const auto is_bad = [](double x) { return !(std::abs(x) <= 1e100); };
   bool bad = false;
@@ -102,10 +106,15 @@ void validate(const MeshView& mesh) {
     for (std::size_t t = 0; t < mesh.tets.size(); ++t)
       for (const VertexId v : mesh.tets[t])
         if (out_of_range(v))
-          fail(ErrorCode::bad_mesh, "tetrahedron ", t, " of a piece, with the id ", mesh.tet_ids[t],
-               ", names point ", v, ", but the piece has ", n,
+          fail(ErrorCode::bad_mesh, cell_of(mesh.dimension), " ", t, " of a piece, with the id ",
+               mesh.tet_ids[t], ", names point ", v, ", but the piece has ", n,
                " points; indices count from 0"
                " within the piece");
+  if (mesh.dimension == 3) return;
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t)
+    if (!has_dimension(mesh.tets[t], mesh.dimension))
+      fail(ErrorCode::bad_mesh, "a piece's ",
+           wrong_cell_text(mesh.tet_ids[t], mesh.tets[t], mesh.dimension));
 }
 
 }  // namespace tess::m2m

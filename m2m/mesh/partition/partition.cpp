@@ -58,6 +58,7 @@ void check(int code, const char* call) {
 /// A mesh that an application makes may not have passed validate().
 void refuse_bad_ids(const TetMesh& mesh) {
   MeshFindings findings;
+  findings.dimension = mesh.dimension;
   findings.add_points(0, mesh.points);
   findings.add_corners(0, mesh.tets, static_cast<GlobalId>(mesh.n_points()));
   findings.refuse_bad_ids(mesh.name, static_cast<GlobalId>(mesh.n_points()));

@@ -75,6 +75,7 @@ std::vector<MeshPart> split(const TetMesh& mesh, std::span<const std::int32_t> p
   std::vector<VertexId> local(n, -1);
   for (std::int32_t p = 0; p < n_parts; ++p) {
     MeshPart& part = result[static_cast<std::size_t>(p)];
+    part.dimension = mesh.dimension;
     for (const GlobalId t : part.tet_ids) {
       for (const VertexId v : mesh.tets[static_cast<std::size_t>(t)]) {
         VertexId& seen = local[static_cast<std::size_t>(v)];

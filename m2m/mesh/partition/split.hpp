@@ -28,16 +28,18 @@ struct MeshPart {
   std::int64_t n_owned = 0;
   std::int64_t n_own_tets = 0;
   std::vector<Ghosts> ghosts;  ///< ghosts of owned points in other parts, by ascending part
+  std::int32_t dimension = 3;  ///< of its cells: TetMesh::dimension
 
   template <class Archive>
   void serialize(Archive& ar) {
-    ar(points, point_ids, tets, tet_ids, n_owned, n_own_tets, ghosts);
+    ar(points, point_ids, tets, tet_ids, n_owned, n_own_tets, ghosts, dimension);
   }
 };
 
 /// A part as couplings see it, valid as long as the part.
 [[nodiscard]] inline MeshView view_of(const MeshPart& part) {
-  return {part.points, part.tets, part.point_ids, part.tet_ids, part.n_owned, part.n_own_tets};
+  return {part.points,  part.tets,       part.point_ids, part.tet_ids,
+          part.n_owned, part.n_own_tets, part.dimension};
 }
 
 /// Returns the parts 0 to n_parts - 1. `parts`: the part of every tetrahedron. `halo_layers`: how

@@ -37,11 +37,12 @@ struct Component {
   std::vector<double> values, truth;
 
   void add_tets(ComponentSums& sums) const {
+    const auto n_corners = static_cast<std::size_t>(part.dimension) + 1;
     for (const Tet& tet : part.own_tets()) {
       std::array<Point, 4> corners{};
       std::array<double, 4> e2{}, t2{}, v{}, v2{}, t{}, t1{}, e2_found{}, t2_found{};
       std::size_t n_found = 0;
-      for (std::size_t k = 0; k < 4; ++k) {
+      for (std::size_t k = 0; k < n_corners; ++k) {
         const auto at = static_cast<std::size_t>(tet[k]);
         corners[k] = part.points[at];
         const double error = values[at] - truth[at];
@@ -56,24 +57,24 @@ struct Component {
         e2_found[k] = e2[k];
         t2_found[k] = t2[k];
       }
-      const double quarter = std::abs(signed_volume(corners)) / 4;
-      for (std::size_t k = 0; k < 4; ++k) {
+      const double share = measure(corners, part.dimension) / static_cast<double>(n_corners);
+      for (std::size_t k = 0; k < n_corners; ++k) {
         const auto at = static_cast<std::size_t>(tet[k]);
-        if (quarter > 0 && ((values[at] != truth[at] && quarter * e2[k] < least_normal) ||
-                            (truth[at] != 0 && quarter * t2[k] < least_normal)))
+        if (share > 0 && ((values[at] != truth[at] && share * e2[k] < least_normal) ||
+                          (truth[at] != 0 && share * t2[k] < least_normal)))
           sums.underflows = true;
       }
-      SquareSums& whole = n_found == 4 ? sums.same : sums.all;
-      whole.error.add(quarter * sum_of(e2));
-      whole.truth.add(quarter * sum_of(t2));
-      if (n_found > 0 && n_found < 4) {
-        sums.found.error.add(quarter * sum_of(e2_found));
-        sums.found.truth.add(quarter * sum_of(t2_found));
+      SquareSums& whole = n_found == n_corners ? sums.same : sums.all;
+      whole.error.add(share * sum_of(e2));
+      whole.truth.add(share * sum_of(t2));
+      if (n_found > 0 && n_found < n_corners) {
+        sums.found.error.add(share * sum_of(e2_found));
+        sums.found.truth.add(share * sum_of(t2_found));
       }
-      sums.value.add(quarter * sum_of(v));
-      sums.value_squared.add(quarter * sum_of(v2));
-      sums.truth.add(quarter * sum_of(t));
-      sums.truth_magnitude.add(quarter * sum_of(t1));
+      sums.value.add(share * sum_of(v));
+      sums.value_squared.add(share * sum_of(v2));
+      sums.truth.add(share * sum_of(t));
+      sums.truth_magnitude.add(share * sum_of(t1));
     }
   }
   void add_vertices(ComponentSums& sums) const {

@@ -1,6 +1,6 @@
 // What a part contributes to the norms of its mesh (field_norms.hpp). Each tetrahedron is one
 // part's own, so a sum over the mesh is the sum over own tetrahedra: of a quarter of the volume,
-// times the sum over the corners. Such a term is rounded where it is computed, and depends on no
+// times the sum over the corners; over triangles, of a third of the area. Such a term is rounded where it is computed, and depends on no
 // part; the terms add up exactly. So the bits of the result do not depend on the partition.
 #pragma once
 

@@ -40,12 +40,14 @@ void Placer::read(RangeLoad load, Callback<PlacerReport> target) {
       tets_.resize(static_cast<std::size_t>(n_tets));
       file->tets(first_tet_, tets_);
     }
+    report.findings.dimension = setup_.dimension;
     report.findings.add_points(first_point_, points_);
     report.findings.add_corners(first_tet_, tets_, setup_.n_points);
   } catch (const Error& error) {
     report.error = {me_, static_cast<std::int32_t>(error.code()), error.what()};
   }
-  const bool refused = report.error.key >= 0 || report.findings.bad_corner.tet >= 0;
+  const bool refused = report.error.key >= 0 || report.findings.bad_corner.tet >= 0 ||
+                       report.findings.bad_cell.tet >= 0;
   knows_ = refused ? Knows::refused : Knows::points;
   if (!refused) ask_corners();
   for (PointQuery& query : std::exchange(queries_, {})) receive_query(std::move(query));
@@ -100,13 +102,14 @@ void Placer::measure(const Aabb& bounds, Callback<PlacerReport> target) {
 void Placer::measure_if_complete() {
   if (!measures_ || n_answers_due_ != 0) return;
   PlacerReport report;
+  report.findings.dimension = setup_.dimension;
   const HilbertCube cube(*measures_);
   measures_.reset();
   cells_.resize(tets_.size());
   for (std::size_t t = 0; t < tets_.size(); ++t) {
     const std::array<Point, 4> corners = corners_of(tets_[t]);
     report.findings.add_shape(first_tet_ + static_cast<GlobalId>(t), corners);
-    if (setup_.is_survey) extent_.add(corners);
+    if (setup_.is_survey) extent_.add(corners, setup_.dimension);
     cells_[t] = cube.cell(mean_of_corners(corners));
   }
   far_.reset();

@@ -27,6 +27,7 @@ struct PlacerSetup {
   std::string name;        ///< of the file; empty if the ranges are sent
   std::string shown_name;  ///< of the mesh, in errors
   GlobalId n_points = 0, n_tets = 0;
+  std::int32_t dimension = 3;  ///< of the cells
   std::int32_t halo_layers = 0;
   std::vector<FormulaField> fields;
   ArrayProxy<Worker> workers;

@@ -40,6 +40,7 @@ void Placer::make_drafts() {
   drop(batches_);
   for (Draft& part : parts_) {
     part.mesh.n_own_tets = static_cast<std::int64_t>(part.mesh.tets.size());
+    part.mesh.dimension = setup_.dimension;
     const IdSet vertices(part.mesh.tets);
     part.asked = vertices.list();
     part.points.resize(part.asked.size());

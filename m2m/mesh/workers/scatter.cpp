@@ -28,7 +28,7 @@ template <class Prepare>
 DistributedMesh send_parts(const TetMesh& mesh, const std::vector<Field>& fields,
                            std::int32_t n_parts, PartitionMethod method, std::int32_t halo_layers,
                            Centring centring, const Prepare& prepare) {
-  DistributedMesh out{{}, n_parts, 0, halo_layers};
+  DistributedMesh out{{}, n_parts, 0, halo_layers, mesh.dimension};
   const bool has_nodes = centring == Centring::nodes;
   const std::size_t n_rows = has_nodes ? mesh.n_points() : mesh.n_tets();
   for (const Field& field : fields) {
@@ -52,7 +52,9 @@ DistributedMesh send_parts(const TetMesh& mesh, const std::vector<Field>& fields
 void show_as_points(PartLoad& load) {
   const MeshView mesh = view_of(load.part);
   MeshPart cloud;
-  cloud.points = centroids({mesh.points, mesh.own_tets()});
+  MeshView own{mesh.points, mesh.own_tets()};
+  own.dimension = mesh.dimension;
+  cloud.points = centroids(own);
   cloud.n_owned = load.part.n_own_tets;
   cloud.point_ids = std::move(load.part.tet_ids);
   load.part = std::move(cloud);

@@ -19,6 +19,7 @@ struct DistributedMesh {
   std::int32_t n_parts = 0;
   std::size_t n_components = 0;  ///< of all fields together
   std::int32_t halo_layers = 0;
+  std::int32_t dimension = 3;  ///< of its cells: TetMesh::dimension
 
   /// Frees the Workers on all PEs. No transfer may be running. The enclosing epoch includes this.
   void destroy() const { workers.destroy(); }

@@ -125,6 +125,7 @@ void Worker::measure(const NormsRequest& request, Callback<NormSums> target) {
 void Worker::write_part(const std::string& stem, const std::vector<std::string>& names) {
   TetMesh mesh;
   mesh.points = part_.points;
+  mesh.dimension = part_.dimension;
   const std::span<const Tet> own = mesh_view().own_tets();
   mesh.tets.assign(own.begin(), own.end());
   std::vector<Field> fields;

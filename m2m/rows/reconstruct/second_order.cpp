@@ -28,10 +28,13 @@ double clamped(double value, const ValueRange& range) {
 }
 
 /// Relative to corner 0, so an offset of the mesh costs no digit.
-Point centroid(const std::array<Point, 4>& c) {
+Point centroid(const std::array<Point, 4>& c, std::int32_t dimension) {
   Point centre;
-  for (std::size_t k = 0; k < 3; ++k)
-    centre[k] = c[0][k] + ((c[1][k] - c[0][k]) + (c[2][k] - c[0][k]) + (c[3][k] - c[0][k])) / 4;
+  for (std::size_t k = 0; k < 3; ++k) {
+    double sum = 0;
+    for (std::size_t i = 1; i <= static_cast<std::size_t>(dimension); ++i) sum += c[i][k] - c[0][k];
+    centre[k] = c[0][k] + sum / (dimension + 1);
+  }
   return centre;
 }
 
@@ -140,7 +143,8 @@ std::vector<ValueRange> vertex_ranges(MeshView mesh, std::span<const double> val
 std::vector<Point> centroids(MeshView mesh) {
   std::vector<Point> centres;
   centres.reserve(mesh.tets.size());
-  for (const Tet& tet : mesh.tets) centres.push_back(centroid(corners_of(mesh.points, tet)));
+  for (const Tet& tet : mesh.tets)
+    centres.push_back(centroid(corners_of(mesh.points, tet), mesh.dimension));
   return centres;
 }
 
@@ -206,7 +210,7 @@ void limit_cell_gradients(MeshView mesh, std::span<const double> values, std::si
                 values[t * n_components + c]);
   for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
     const std::array<Point, 4> corners = corners_of(mesh.points, mesh.tets[t]);
-    const Point centre = centroid(corners);
+    const Point centre = centroid(corners, mesh.dimension);
     for (std::size_t c = 0; c < n_components; ++c) {
       const double own = values[t * n_components + c];
       Point& gradient = gradients[t * n_components + c];

@@ -54,7 +54,7 @@ void second_order_values(MeshView mesh, std::span<const PointInTet> points,
 [[nodiscard]] std::vector<ValueRange> vertex_ranges(MeshView mesh, std::span<const double> values,
                                                     std::size_t n_components);
 
-/// The mean of the four corners, per tetrahedron: targets of a transfer into a field in tetrahedra.
+/// The mean of the corners, per cell: targets of a transfer into a field in tetrahedra.
 [[nodiscard]] std::vector<Point> centroids(MeshView mesh);
 
 /// Evaluates a field in tetrahedra at points. `values`, `gradients`: tetrahedra × n_components.

@@ -33,7 +33,8 @@ void add(MeshHash& hash, std::span<const T> values) {
 
 MeshHash hash_of(const MeshView& mesh) {
   MeshHash hash{static_cast<std::uint64_t>(mesh.n_owned),
-                static_cast<std::uint64_t>(mesh.n_own_tets)};
+                static_cast<std::uint64_t>(mesh.n_own_tets),
+                static_cast<std::uint64_t>(mesh.dimension)};
   add(hash, mesh.points);
   add(hash, mesh.tets);
   add(hash, mesh.point_ids);
