@@ -17,6 +17,7 @@
 #include "runtime/core/number.hpp"
 
 #include <algorithm>
+#include <filesystem>
 #include <fmt/core.h>
 #include <optional>
 
@@ -161,11 +162,16 @@ std::vector<Field> start_values(const std::vector<Field>& fields, std::size_t n_
 class ResultFile {
  public:
   ResultFile(const std::string& path, const TetMesh& mesh) : path_(path), mesh_(mesh) {
-    if (!path.empty() && !is_vtu(path)) steps_.emplace(path, mesh);
+    if (is_pvd(path))
+      series_.emplace(path);
+    else if (!path.empty() && !is_vtu(path))
+      steps_.emplace(path, mesh);
   }
   void add(double time, std::span<const Field> fields, std::span<const Field> cells) {
     if (steps_)
       steps_->add(time, fields, cells);
+    else if (series_)
+      series_->add(time, mesh_, fields, cells);
     else if (!path_.empty())
       write_vtu(path_, mesh_, fields, cells, time);
   }
@@ -177,6 +183,7 @@ class ResultFile {
   const std::string& path_;
   const TetMesh& mesh_;
   std::optional<ExodusSteps> steps_;
+  std::optional<PvdSeries> series_;
 };
 
 struct Run {
@@ -278,7 +285,8 @@ void check_options(const FileFieldsRequest& request) {
   require_names_differ(request.out, split_names(request.fields));
   if (is_pvtu(request.out))
     fail(ErrorCode::bad_argument, "--out ", request.out,
-         ": fields of files are gathered on one process; give a file that ends in .exo or .vtu");
+         ": fields of files are gathered on one process; give a file that ends in .exo, .vtu or "
+         ".pvd");
 }
 
 /// The next steps, as many as are moved together; `next` is a position in fields.steps().
@@ -351,7 +359,15 @@ TaskOf<FileFieldsReport> move_file_fields(const FileFieldsRequest& request,
   const SourceFields fields(request, source);
   if (is_vtu(request.out) && fields.steps().size() > 1)
     fail(ErrorCode::bad_argument, "--out ", request.out, ": VTU holds one step, and there are ",
-         fields.steps().size(), "; give a file that ends in .exo, or one --step");
+         fields.steps().size(), "; give a file that ends in .exo or .pvd, or one --step");
+  for (std::size_t k = 0; k < fields.steps().size() && is_pvd(request.out); ++k)
+    for (const auto& [name, path] :
+         {std::pair{"SOURCE", &request.source}, {"TARGET", &request.target}})
+      if (const std::string step = PvdSeries::path_of_step(request.out, k);
+          std::filesystem::exists(step) && std::filesystem::exists(*path) &&
+          std::filesystem::equivalent(step, *path))
+        fail(ErrorCode::bad_argument, step, ", a step of --out, would overwrite ", name,
+             "; write the series elsewhere");
   if (fields.has(FieldPlace::tets) && !(request.weights + request.from_weights).empty())
     fail(ErrorCode::bad_argument,
          "weights are of values at vertices, and --fields names a field in elements; leave it out, "

@@ -109,7 +109,8 @@ void add_output(kit::Driver& driver, Options& options) {
       "--out FILE", options.request.out,
       "write the target mesh with the fields and the status (transfer_status if a field is called "
       "status): ExodusII if it ends in .exo, .e, "
-      ".ex2, .g, .exii, .gen or .ncdf, VTU if in .vtu, VTU written by all processes, a file per "
+      ".ex2, .g, .exii, .gen or .ncdf, VTU if in .vtu, a VTU file per step if in .pvd, VTU written "
+      "by all processes, a file per "
       "chare, if in .pvtu; with several targets to FILE.B.exo, FILE.C.exo");
   driver.in(Mode::files);
   driver.option("--weights FILE", options.request.weights,

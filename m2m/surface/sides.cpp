@@ -1,5 +1,7 @@
 #include "m2m/surface/sides.hpp"
 
+#include "m2m/rows/interpolate/orientation.hpp"
+
 #include <array>
 
 namespace tess::m2m {
@@ -24,6 +26,18 @@ Tet side_of(const Tet& cell, std::int32_t dimension, std::int32_t side) {
   if (dimension == 1) return {cell[s], cell[s], cell[s], cell[s]};
   const VertexId to = cell[(s + 1) % 3];
   return {cell[s], to, to, to};
+}
+
+Tet outward(const TetMesh& mesh, const Side& side) {
+  const Tet& cell = mesh.tets[static_cast<std::size_t>(side.tet)];
+  Tet out = side_of(cell, mesh.dimension, side.side);
+  if (mesh.dimension < 3) return out;
+  const auto at = [&](VertexId v) { return mesh.points[static_cast<std::size_t>(v)]; };
+  const VertexId* opposite = std::ranges::find_if(
+      cell, [&](VertexId v) { return std::ranges::find(out, v) == out.end(); });
+  if (opposite != cell.end() && orientation(at(*opposite), at(out[0]), at(out[1]), at(out[2])) < 0)
+    std::swap(out[0], out[1]);
+  return out;
 }
 
 Tet key_of(Tet cell, std::int32_t dimension) {

@@ -17,6 +17,9 @@ namespace tess::m2m {
 /// inverted is counter-clockwise seen from outside.
 [[nodiscard]] Tet side_of(const Tet& cell, std::int32_t dimension, std::int32_t side);
 
+/// A side as a cell: a triangle of a tetrahedron faces away from it, also if that is inverted.
+[[nodiscard]] Tet outward(const TetMesh& mesh, const Side& side);
+
 /// The same for all cells of this dimension that have the same corners.
 [[nodiscard]] Tet key_of(Tet cell, std::int32_t dimension);
 

@@ -1,6 +1,5 @@
 #include "m2m/surface.hpp"
 
-#include "m2m/rows/interpolate/orientation.hpp"
 #include "m2m/surface/sides.hpp"
 #include "runtime/core/error.hpp"
 #include "runtime/core/number.hpp"
@@ -13,20 +12,7 @@
 namespace tess::m2m {
 namespace {
 
-using Range = std::pair<GlobalId, GlobalId>;
-
-/// The side as a cell; a triangle of a tetrahedron faces away from it.
-Tet outward(const TetMesh& mesh, const Side& side) {
-  const Tet& cell = mesh.tets[static_cast<std::size_t>(side.tet)];
-  Tet out = side_of(cell, mesh.dimension, side.side);
-  if (mesh.dimension < 3) return out;
-  const auto at = [&](VertexId v) { return mesh.points[static_cast<std::size_t>(v)]; };
-  const VertexId* opposite = std::ranges::find_if(
-      cell, [&](VertexId v) { return std::ranges::find(out, v) == out.end(); });
-  if (opposite != cell.end() && orientation(at(*opposite), at(out[0]), at(out[1]), at(out[2])) < 0)
-    std::swap(out[0], out[1]);
-  return out;
-}
+using CellSpan = std::pair<GlobalId, GlobalId>;
 
 /// The sides, each once.
 std::vector<Side> without_repeats(const TetMesh& mesh, const std::vector<Side>& sides) {
@@ -57,7 +43,7 @@ struct Collected {
       out.tet_of_cell.push_back(side.tet);
     }
   }
-  void add_cells(const Range& range) {
+  void add_cells(const CellSpan& range) {
     out.mesh.dimension = volume.dimension;
     for (GlobalId t = range.first; t < range.second; ++t) {
       out.mesh.tets.push_back(volume.tets[static_cast<std::size_t>(t)]);
@@ -91,7 +77,7 @@ void for_blocks(const TetMesh& mesh, const F& f) {
   GlobalId first = 0;
   for (const Block& block : mesh.blocks) {
     const GlobalId end = first + static_cast<GlobalId>(block.n_tets);
-    f(block, Range{first, end});
+    f(block, CellSpan{first, end});
     first = end;
   }
 }
@@ -125,9 +111,9 @@ std::optional<SurfaceMesh> side_sets(const TetMesh& mesh, std::string_view part,
 }
 template <class Fits>
 std::optional<SurfaceMesh> blocks(const TetMesh& mesh, std::string_view part, const Fits& fits) {
-  std::vector<Range> ranges;
+  std::vector<CellSpan> ranges;
   const Block* first = nullptr;
-  for_blocks(mesh, [&](const Block& block, const Range& range) {
+  for_blocks(mesh, [&](const Block& block, const CellSpan& range) {
     if (!fits(block.id, block.name)) return;
     if (first == nullptr) first = &block;
     ranges.push_back(range);
@@ -136,7 +122,7 @@ std::optional<SurfaceMesh> blocks(const TetMesh& mesh, std::string_view part, co
   Collected all{mesh};
   if (mesh.dimension == 3) all.add_sides(boundary_sides(mesh, ranges));
   if (mesh.dimension < 3)
-    for (const Range& range : ranges) all.add_cells(range);
+    for (const CellSpan& range : ranges) all.add_cells(range);
   return all.number(part, first->id, first->name);
 }
 
@@ -147,7 +133,8 @@ SurfaceMesh skin_of(const TetMesh& mesh) {
     fail(ErrorCode::bad_argument, "mesh ", mesh.name,
          ": a mesh of edges has no skin; name a block, or none");
   Collected all{mesh};
-  all.add_sides(boundary_sides(mesh, std::array{Range{0, static_cast<GlobalId>(mesh.n_tets())}}));
+  all.add_sides(
+      boundary_sides(mesh, std::array{CellSpan{0, static_cast<GlobalId>(mesh.n_tets())}}));
   return all.number("skin", 1, "skin");
 }
 

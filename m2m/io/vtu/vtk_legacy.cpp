@@ -166,39 +166,40 @@ class VtuFile::Legacy {
   }
 
   void attribute(const std::string& keyword) {
+    constexpr std::array<std::pair<std::string_view, std::size_t>, 7> known{{{"scalars", 1},
+                                                                             {"vectors", 3},
+                                                                             {"normals", 3},
+                                                                             {"tensors", 9},
+                                                                             {"tensors6", 6},
+                                                                             {"global_ids", 1},
+                                                                             {"pedigree_ids", 1}}};
+    const auto kind = std::ranges::find(known, keyword, [](const auto& k) { return k.first; });
     const std::string name = decoded(raw_word());
+    const std::string bytes = binary_ ? "unsigned_char" : "float";
     if (keyword == "lookup_table") {
-      (void)values(name, binary_ ? "unsigned_char" : "float", count(4), 4);
-      return;
-    }
-    std::size_t n_components = keyword == "tensors" ? 9 : keyword == "tensors6" ? 6 : 3;
-    std::string type;
-    if (keyword == "color_scalars") {
-      n_components = count(0);
-      type = binary_ ? "unsigned_char" : "float";
-    } else if (keyword == "scalars") {
-      type = word();
-      const std::size_t end = std::min(bytes_.find('\n', at_), bytes_.size());
-      const bool has_count =
-          bytes_.substr(at_, end - at_).find_first_not_of(" \r") != std::string_view::npos;
-      n_components = has_count ? count(0) : 1;
-      const std::size_t end_of_line = at_;
-      if (word() != "lookup_table")
-        at_ = end_of_line;
-      else
-        word();
+      (void)values(name, bytes, count(4), 4);
+    } else if (keyword == "color_scalars") {
+      section_->push_back(values(name, bytes, n_rows_, count(0)));
     } else if (keyword == "texture_coordinates") {
-      n_components = count(0);
-      type = word();
-    } else if (keyword == "vectors" || keyword == "normals" || keyword.starts_with("tensors")) {
-      type = word();
-    } else if (keyword == "global_ids" || keyword == "pedigree_ids") {
-      n_components = 1;
-      type = word();
-    } else {
+      const std::size_t n_components = count(0);
+      section_->push_back(values(name, word(), n_rows_, n_components));
+    } else if (kind == known.end()) {
       file_.damaged("'", clean_name(keyword.substr(0, 40)), "' is no attribute");
+    } else {
+      const std::string type = word();
+      std::size_t n_components = kind->second;
+      if (keyword == "scalars") {
+        const std::size_t end = std::min(bytes_.find('\n', at_), bytes_.size());
+        const std::string_view rest = bytes_.substr(at_, end - at_);
+        if (rest.find_first_not_of(" \r") != std::string_view::npos) n_components = count(0);
+        const std::size_t end_of_line = at_;
+        if (word() == "lookup_table")
+          word();
+        else
+          at_ = end_of_line;
+      }
+      section_->push_back(values(name, type, n_rows_, n_components));
     }
-    section_->push_back(values(name, type, n_rows_, n_components));
   }
 
   /// The array that stands here; passes over its numbers.

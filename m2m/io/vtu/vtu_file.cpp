@@ -80,7 +80,10 @@ std::optional<std::vector<T>> converted(const std::string& type, const std::stri
 }  // namespace
 
 VtuFile::VtuFile(const std::string& path, std::string_view bytes) : path_(path) {
-  if (is_legacy_vtk(bytes)) return read_legacy(bytes);
+  if (is_legacy_vtk(bytes)) {
+    read_legacy(bytes);
+    return;
+  }
   XmlScanner xml(bytes);
   Scan scan{.bytes = bytes};
   bool has_root = false, is_complete = false;
