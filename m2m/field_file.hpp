@@ -8,7 +8,7 @@
 // |----------|---------------------------------|---------------------------|--------------------|
 // | ExodusII | nodal variables                 | element variables         | those of the file  |
 // | gmsh     | $NodeData                       | $ElementData              | of all sections    |
-// | VTU      | PointData                       | CellData                  | one                |
+// | VTK      | PointData                       | CellData                  | one                |
 //
 // ExodusII has scalars only: v_x, v_y and v_z in a row are also read as one field `v` of three
 // components, and each under its own name. Only the step that is asked for is read. A NaN in the

@@ -35,7 +35,8 @@ struct Block {
   friend bool operator==(const Block&, const Block&) = default;
 };
 /// A face of a tetrahedron, numbered as in ExodusII: side 1 is opposite to corner 2, side 2 to
-/// corner 0, side 3 to corner 1, side 4 to corner 3.
+/// corner 0, side 3 to corner 1, side 4 to corner 3. Of a triangle it is an edge: side 1 from corner
+/// 0 to 1, side 2 from 1 to 2, side 3 from 2 to 0. Of an edge it is an end: corner 0, corner 1.
 struct Side {
   GlobalId tet = 0;
   std::int32_t side = 1;

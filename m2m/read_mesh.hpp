@@ -11,8 +11,9 @@
 namespace tess::m2m {
 
 /// `name` is "kuhn:8" or "kuhn:8@0.2" (kuhn.hpp), or the path of an ExodusII file, of a gmsh file
-/// of version 2.0 to 2.2 or 4.1, ASCII or binary, or of a VTU file (VTK XML UnstructuredGrid). Global ids
-/// follow the order of the file.
+/// of version 2.0 to 2.2, 4.0 or 4.1, ASCII or binary, or of a VTK file (XML or legacy
+/// UnstructuredGrid). Global ids follow the order of the file. Its cells are the elements of the
+/// highest dimension that the file has: TetMesh::dimension.
 [[nodiscard]] TetMesh read_mesh(const std::string& name);
 
 }  // namespace tess::m2m

@@ -84,6 +84,7 @@ void refuse_to_overwrite(kit::FileNames& names, const std::string& out, const Pr
     if (!is_written(m, problem.pairs)) continue;
     const std::string path = path_of_result(out, m, problem.meshes.size(), problem.pairs);
     if (path != out) names.writes("--out " + out + ":", path);
+    if (is_pvd(path)) names.writes("--out " + out + ":", PvdSeries::path_of_step(path, 0));
     for (std::int32_t k = 0; k < problem.chares() && is_pvtu(out); ++k)
       names.writes("--out " + out + ":",
                    std::filesystem::path(path).replace_extension(fmt::format("{}.vtu", k)));

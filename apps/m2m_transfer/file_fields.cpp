@@ -2,13 +2,13 @@
 
 #include "apps/kit/output/write_file.hpp"
 #include "apps/kit/rows.hpp"
+#include "apps/m2m_transfer/input/part.hpp"
 #include "apps/m2m_transfer/output/found.hpp"
 #include "apps/m2m_transfer/result_format.hpp"
 #include "m2m/cell_transfer.hpp"
 #include "m2m/count_nan.hpp"
 #include "m2m/coupling_weights.hpp"
 #include "m2m/field_file.hpp"
-#include "m2m/read_mesh.hpp"
 #include "m2m/transfer.hpp"
 #include "m2m/weights_file.hpp"
 #include "m2m/write_exodus.hpp"
@@ -17,6 +17,7 @@
 #include "runtime/core/number.hpp"
 
 #include <algorithm>
+#include <filesystem>
 #include <fmt/core.h>
 #include <optional>
 
@@ -48,8 +49,8 @@ bool is_formula(const std::string& name) {
 /// The fields of the source, read or sampled one step at a time.
 class SourceFields {
  public:
-  SourceFields(const FileFieldsRequest& request, const TetMesh& mesh)
-      : mesh_(mesh), names_(split_names(request.fields)) {
+  SourceFields(const FileFieldsRequest& request, const ReadPart& source)
+      : source_(source), names_(split_names(request.fields)) {
     if (!request.source.starts_with("kuhn:")) file_.emplace(request.source);
     bool from_file = false;
     for (const std::string& name : names_) {
@@ -76,9 +77,8 @@ class SourceFields {
     std::vector<Field> fields;
     for (std::size_t f = 0; f < names_.size(); ++f) {
       if (places_[f] != place) continue;
-      fields.push_back(formulas_[f]                    ? sample(mesh_, names_[f], *formulas_[f])
-                       : place == FieldPlace::vertices ? file_->vertex_field(mesh_, names_[f], step)
-                                                       : file_->tet_field(mesh_, names_[f], step));
+      fields.push_back(formulas_[f] ? sample(source_.mesh(), names_[f], *formulas_[f])
+                                    : from_file(names_[f], place, step));
     }
     return fields;
   }
@@ -87,11 +87,20 @@ class SourceFields {
   }
 
  private:
+  [[nodiscard]] Field from_file(const std::string& name, FieldPlace place, std::size_t step) const {
+    const std::optional<SurfaceMesh>& part = source_.part;
+    if (place == FieldPlace::vertices) {
+      Field field = file_->vertex_field(source_.whole, name, step);
+      return part ? rows_of(field, part->vertex_of_point) : field;
+    }
+    Field field = file_->tet_field(source_.whole, name, step);
+    return part ? rows_of(field, part->tet_of_cell) : field;
+  }
   /// A name that is neither is refused with what the file has.
   [[nodiscard]] std::optional<Formula> formula_of(const std::string& name) const {
     if (!is_formula(name) && file_ && !file_->fields().empty())
-      (void)file_->vertex_field(mesh_, name, 0);
-    return make_formula(name, bounds(mesh_));
+      (void)file_->vertex_field(source_.whole, name, 0);
+    return make_formula(name, bounds(source_.mesh()));
   }
   void choose_steps(const std::string& text) {
     const std::size_t n = file_->n_steps();
@@ -107,7 +116,7 @@ class SourceFields {
     steps_ = {*step};
   }
 
-  const TetMesh& mesh_;
+  const ReadPart& source_;
   std::vector<std::string> names_;
   std::optional<FieldFile> file_;
   std::vector<FieldPlace> places_;
@@ -198,11 +207,16 @@ std::vector<Field> start_values(const std::vector<Field>& fields, std::size_t n_
 class ResultFile {
  public:
   ResultFile(const std::string& path, const TetMesh& mesh) : path_(path), mesh_(mesh) {
-    if (!path.empty() && !is_vtu(path)) steps_.emplace(path, mesh);
+    if (is_pvd(path))
+      series_.emplace(path);
+    else if (!path.empty() && !is_vtu(path))
+      steps_.emplace(path, mesh);
   }
   void add(double time, std::span<const Field> fields, std::span<const Field> cells) {
     if (steps_)
       steps_->add(time, fields, cells);
+    else if (series_)
+      series_->add(time, mesh_, fields, cells);
     else if (!path_.empty())
       write_vtu(path_, mesh_, fields, cells, time);
   }
@@ -214,11 +228,12 @@ class ResultFile {
   const std::string& path_;
   const TetMesh& mesh_;
   std::optional<ExodusSteps> steps_;
+  std::optional<PvdSeries> series_;
 };
 
 struct Run {
   const FileFieldsRequest& request;
-  TetMesh source, target;
+  const TetMesh &source, &target;
   TransferOptions options{};
   WeightMatrix matrix{};
   std::vector<Status> status{};  // after a search
@@ -315,7 +330,8 @@ void check_options(const FileFieldsRequest& request) {
   require_names_differ(request.out, split_names(request.fields));
   if (is_pvtu(request.out))
     fail(ErrorCode::bad_argument, "--out ", request.out,
-         ": fields of files are gathered on one process; give a file that ends in .exo or .vtu");
+         ": fields of files are gathered on one process; give a file that ends in .exo, .vtu or "
+         ".pvd");
 }
 
 /// The next steps, as many as are moved together, with at most so many components unless it is one;
@@ -362,7 +378,11 @@ TaskOf<FileFieldsReport> move_file_fields(const FileFieldsRequest& request,
   check_options(request);
   FileFieldsReport report;
   progress.phase("reading");
-  Run run{request, read_mesh(request.source), read_mesh(request.target)};
+  const ReadPart source = read_part(request.source, request.source_part);
+  const ReadPart target = read_part(request.target, request.target_part);
+  // Fields stay as they are on the mesh at rest.
+  TetMesh moving = request.moves.empty() ? TetMesh{} : source.mesh();
+  Run run{request, request.moves.empty() ? source.mesh() : moving, target.mesh()};
   run.options.policy = parse_policy(request.policy);
   run.options.kind = parse_transfer_kind(request.kind);
   run.options.tolerance = request.tolerance;
@@ -372,8 +392,8 @@ TaskOf<FileFieldsReport> move_file_fields(const FileFieldsRequest& request,
     progress.phase(name);
   };
   run.options.on_phase = &on_phase;
-  report.source = request.source;
-  report.target = request.target;
+  report.source = run.source.name;
+  report.target = run.target.name;
   const auto elements_of = [](const TetMesh& mesh) -> OtherElements {
     return {.skipped = skipped_text(mesh),
             .split = split_text(mesh),
@@ -382,27 +402,33 @@ TaskOf<FileFieldsReport> move_file_fields(const FileFieldsRequest& request,
   report.source_elements = elements_of(run.source);
   report.target_elements = elements_of(run.target);
   report.source_elements.repeated = repeated_text(run.source);
-  if (request.source == request.target)
+  if (report.source == report.target)
     report.source_elements.coincident = coincident_text(run.source);
   SourceMotion motion(request, run.source);
   if (motion.is_none() && request.steps > 1)
     fail(ErrorCode::bad_argument, "--steps ", request.steps,
          " applies fields of files once: add --move A:…, or leave it out");
-  // Formulas among the fields move with the mesh.
-  const TetMesh at_start = motion.is_none() ? TetMesh{} : run.source;
-  const SourceFields fields(request, motion.is_none() ? run.source : at_start);
+  const SourceFields fields(request, source);
   if (is_vtu(request.out) && fields.steps().size() > 1)
     fail(ErrorCode::bad_argument, "--out ", request.out, ": VTU holds one step, and there are ",
-         fields.steps().size(), "; give a file that ends in .exo, or one --step");
+         fields.steps().size(), "; give a file that ends in .exo or .pvd, or one --step");
+  for (std::size_t k = 0; k < fields.steps().size() && is_pvd(request.out); ++k)
+    for (const auto& [name, path] :
+         {std::pair{"SOURCE", &request.source}, {"TARGET", &request.target}})
+      if (const std::string step = PvdSeries::path_of_step(request.out, k);
+          std::filesystem::exists(step) && std::filesystem::exists(*path) &&
+          std::filesystem::equivalent(step, *path))
+        fail(ErrorCode::bad_argument, step, ", a step of --out, would overwrite ", name,
+             "; write the series elsewhere");
   if (fields.has(FieldPlace::tets) && !(request.weights + request.from_weights).empty())
     fail(ErrorCode::bad_argument,
          "weights are of values at vertices, and --fields names a field in elements; leave it out, "
          "or --weights and --from-weights");
   if (!request.from_weights.empty()) read_matrix(run, report);
   ResultFile out(request.out, run.target);
-  for (int step = 1; step < request.steps; ++step) motion.move(run.source);
+  for (int step = 1; step < request.steps; ++step) motion.move(moving);
   for (std::size_t next = 0; next < fields.steps().size();) {
-    if (next > 0) motion.move(run.source);
+    if (next > 0) motion.move(moving);
     Batch batch = read_batch(fields, motion.is_none() ? batch_components : 0, next);
     motion.turn(batch.vertices.fields);
     motion.turn(batch.cells.fields);

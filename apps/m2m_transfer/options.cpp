@@ -26,11 +26,16 @@ constexpr kit::Modes searches = runs | studies | Mode::files | Mode::round_trips
 constexpr kit::Modes file_modes = Mode::files | Mode::from_weights;
 
 void add_meshes(kit::Driver& driver, Request& request) {
-  driver.option(
-      "SOURCE", request.source,
-      "mesh: an ExodusII, gmsh (2.0 to 2.2, 4.1) or VTU file, or kuhn:N, a generated box of 6 N^3 "
-      "tetrahedra");
+  driver.option("SOURCE", request.source,
+                "mesh: an ExodusII, gmsh (2.0 to 4.1) or VTK file (.vtu, .pvtu, .vtk) of "
+                "tetrahedra and other "
+                "solids, of surfaces or of lines; or kuhn:N, a generated box of 6 N^3 tetrahedra");
   driver.option("TARGET", request.target, "mesh of the same kinds");
+  driver.in(runs | file_modes);
+  driver.option("--source-part NAME", request.source_part,
+                "a part of SOURCE as the source: skin, or a side set or block by name or number "
+                "(surfaces of ExodusII and gmsh files)");
+  driver.option("--target-part NAME", request.target_part, "a part of TARGET likewise");
   driver.in(runs);
   driver.option("MORE", request.more, "further meshes of the same kinds, for --pairs");
 }
@@ -110,7 +115,8 @@ void add_output(kit::Driver& driver, Options& options) {
       "--out FILE", options.request.out,
       "write the target mesh with the fields and the status (transfer_status if a field is called "
       "status): ExodusII if it ends in .exo, .e, "
-      ".ex2, .g, .exii, .gen or .ncdf, VTU if in .vtu, VTU written by all processes, a file per "
+      ".ex2, .g, .exii, .gen or .ncdf, VTU if in .vtu, a VTU file per step if in .pvd, VTU written "
+      "by all processes, a file per "
       "chare, if in .pvtu; with several targets to FILE.B.exo, FILE.C.exo");
   driver.in(Mode::files);
   driver.option("--weights FILE", options.request.weights,

@@ -1,16 +1,15 @@
 #include "m2m/overset/boundary.hpp"
 
 #include "m2m/rows/interpolate/orientation.hpp"
+#include "m2m/surface/sides.hpp"
 #include "runtime/core/error.hpp"
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 namespace tess::m2m {
 namespace {
-
-/// Side 1 of ExodusII is opposite to corner 2, and so on (m2m/mesh.hpp).
-constexpr std::array<std::size_t, 4> corner_of_side{2, 0, 1, 3};
 
 struct Face {
   std::array<VertexId, 3> key{};  // sorted
@@ -21,32 +20,19 @@ Point at(const TetMesh& mesh, VertexId v) {
   return mesh.points[static_cast<std::size_t>(v)];
 }
 
-Face face_of(const TetMesh& mesh, const Tet& tet, std::size_t opposite) {
-  Face face;
-  for (std::size_t i = 0; i < 3; ++i) face.corners[i] = tet[faces_of_tet[opposite][i]];
-  // The normal points away from the opposite corner.
-  if (orientation(at(mesh, tet[opposite]), at(mesh, face.corners[0]), at(mesh, face.corners[1]),
-                  at(mesh, face.corners[2])) < 0)
-    std::swap(face.corners[1], face.corners[2]);
-  face.key = face.corners;
-  std::sort(face.key.begin(), face.key.end());
-  return face;
+/// The normal points out of the tetrahedron.
+Face face_of(const TetMesh& mesh, const Side& side) {
+  const Tet corners = outward(mesh, side);
+  const Tet key = key_of(corners, 2);
+  return {{key[0], key[1], key[2]}, {corners[0], corners[1], corners[2]}};
 }
 
 std::vector<Face> boundary_faces(const TetMesh& mesh) {
-  std::vector<Face> all;
-  all.reserve(4 * mesh.tets.size());
-  for (const Tet& tet : mesh.tets)
-    for (std::size_t i = 0; i < 4; ++i) all.push_back(face_of(mesh, tet, i));
-  std::sort(all.begin(), all.end(), [](const Face& a, const Face& b) { return a.key < b.key; });
-  std::vector<Face> single;
-  for (std::size_t i = 0; i < all.size();) {
-    std::size_t end = i + 1;
-    while (end < all.size() && all[end].key == all[i].key) ++end;
-    if (end == i + 1) single.push_back(all[i]);
-    i = end;
-  }
-  return single;
+  std::vector<Face> faces;
+  const std::array all{std::pair<GlobalId, GlobalId>{0, static_cast<GlobalId>(mesh.n_tets())}};
+  for (const Side& side : boundary_sides(mesh, all)) faces.push_back(face_of(mesh, side));
+  std::sort(faces.begin(), faces.end(), [](const Face& a, const Face& b) { return a.key < b.key; });
+  return faces;
 }
 
 /// Vertices that are connected by faces have the same root.
@@ -92,18 +78,15 @@ std::vector<std::array<VertexId, 3>> keys_of(const TetMesh& mesh, const std::str
   for (const SideSet& set : mesh.side_sets) {
     if (name_of(set) != name) continue;
     std::vector<std::array<VertexId, 3>> keys;
-    for (const Side& side : set.entries)
-      keys.push_back(face_of(mesh, mesh.tets[static_cast<std::size_t>(side.tet)],
-                             corner_of_side[static_cast<std::size_t>(side.side - 1)])
-                         .key);
+    for (const Side& side : set.entries) keys.push_back(face_of(mesh, side).key);
     std::sort(keys.begin(), keys.end());
     return keys;
   }
   std::string known;
   for (const SideSet& set : mesh.side_sets) known += (known.empty() ? "" : ", ") + name_of(set);
   fail(ErrorCode::bad_argument, mesh.name, " has no side set ", name, "; it has ",
-       known.empty() ? "none, since only ExodusII files have them: leave the wall out to take the "
-                       "cavities, or give the file of a surface"
+       known.empty() ? "none (ExodusII and gmsh files can have them): leave the wall out to take "
+                       "the cavities, or give the file of a surface"
                      : known);
 }
 

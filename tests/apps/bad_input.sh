@@ -116,6 +116,8 @@ cp "$scratch/box.msh" "$scratch/kept.msh"
 refuses "would overwrite TARGET" "$bin/m2m_transfer" kuhn:2 "$scratch/kept.msh" --out "$scratch/./kept.msh"
 refuses "would overwrite SOURCE" "$bin/m2m_transfer" "$scratch/kept.msh" kuhn:2 --json "$scratch/kept.msh"
 refuses "kept.xyz: the ending chooses the format; give .exo" "${alone[@]}" --out "$scratch/kept.xyz"
+refuses "mesh kuhn:3 has no part 'wall': there are skin" "${alone[@]}" --target-part wall
+refuses "--source-part skin does not work with --study" "${alone[@]}" --source-part skin --study h
 refuses "r.pvtu: fields of files are gathered" "${alone[@]}" --out "$scratch/r.pvtu" --weights "$scratch/w.nc"
 refuses "missing/r.pvtu" "${alone[@]}" --out "$scratch/missing/r.pvtu"
 refuses "XML, which names the parts, cannot hold this name" "${alone[@]}" --out "$scratch/"$'r\xf6.pvtu'
@@ -141,7 +143,7 @@ overset=("$bin/overset" --json "$scratch/result.json")
 refuses "log(x-2)" "${overset[@]}" kuhn:8 ball:4 --field "log(x-2)"
 refuses "kuhn:3 has no cavity" "${overset[@]}" kuhn:4 kuhn:3
 refuses "ball:1: give a number" "${overset[@]}" kuhn:4 ball:1
-refuses "no side set body; it has none, since only ExodusII" "${overset[@]}" kuhn:4 ball:4 --wall body
+refuses "no side set body; it has none (ExodusII and gmsh" "${overset[@]}" kuhn:4 ball:4 --wall body
 refuses "missing.obj" "${overset[@]}" kuhn:4 kuhn:4 --wall "$scratch/missing.obj"
 printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >"$scratch/sheet.obj"
 refuses "the wall is open" "${overset[@]}" kuhn:4 kuhn:4 --wall "$scratch/sheet.obj"

@@ -160,8 +160,7 @@ TEST_CASE("elements of higher order are refused by name", "[m2m][io][.][shared_d
     CHECK_THAT(message, Contains(known.word) && Contains(known.file));
   }
   CHECK(total_volume(read_mesh(shared_data("mfem/simple-cube-tet4.e"))) > 0);
-  const std::string surface = shared_data("skfem/cylinder_stokes.msh");
-  CHECK_THROWS_WITH(read_mesh(surface), Contains("cylinder_stokes.msh"));
+  CHECK(read_mesh(shared_data("skfem/cylinder_stokes.msh")).dimension == 2);
 }
 
 TEST_CASE("a missing, empty or foreign file gives one line of error that names it", "[m2m][io]") {

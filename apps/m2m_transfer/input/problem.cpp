@@ -1,5 +1,6 @@
 #include "apps/m2m_transfer/input/problem.hpp"
 
+#include "apps/m2m_transfer/input/part.hpp"
 #include "m2m/read_mesh.hpp"
 #include "runtime/core/error.hpp"
 #include "runtime/more/when.hpp"
@@ -51,14 +52,16 @@ void sample_fields(Problem& problem, std::size_t m) {
 /// Surveys a mesh; fields only if the domain of the formulas is known.
 Task read_one(Problem& problem, std::size_t m) {
   RunMesh& mesh = problem.meshes[m];
-  if (problem.partition == PartitionMethod::curve && is_read_in_ranges(mesh.name)) {
+  if (problem.partition == PartitionMethod::curve && mesh.part.empty() &&
+      is_read_in_ranges(mesh.name)) {
     std::vector<FormulaField> fields;
     for (std::size_t f = 0; f < problem.formulas.size(); ++f)
       fields.push_back({problem.field_names[f], problem.domain});
     mesh.survey = co_await survey(mesh.name, std::move(fields));
     co_return;
   }
-  mesh.mesh = read_mesh(mesh.name);
+  mesh.mesh = read_part(mesh.name, mesh.part).mesh();
+  mesh.name = mesh.mesh->name;
   mesh.survey = survey(*mesh.mesh);
   sample_fields(problem, m);
 }
@@ -90,9 +93,12 @@ Task read_meshes(const Request& request, Problem& problem) {
   co_await tess::when_all(std::move(tasks));
 }
 
-/// The edge of a cube with the volume of six average tetrahedra: 1/N for kuhn:N.
-double typical_edge(const MeshSurvey& mesh) {
-  return std::cbrt(6 * mesh.volume / static_cast<double>(mesh.n_tets));
+/// The edge of a cube with the volume of six average tetrahedra, 1/N for kuhn:N, or of a square with
+/// the area of two average triangles.
+double typical_edge(const RunMesh& mesh) {
+  const std::int32_t dimension = mesh.mesh ? mesh.mesh->dimension : 3;
+  const double each = mesh.survey.volume / static_cast<double>(mesh.survey.n_tets);
+  return dimension == 3 ? std::cbrt(6 * each) : dimension == 2 ? std::sqrt(2 * each) : each;
 }
 
 TransferReport report_of(const Problem& problem, const Pair& pair, const Request& request) {
@@ -120,7 +126,7 @@ TransferReport report_of(const Problem& problem, const Pair& pair, const Request
   report.chares = request.chares();
   report.voxel = problem.voxel[0];
   report.source_tets = static_cast<std::size_t>(source.survey.n_tets);
-  report.source_edge = typical_edge(source.survey);
+  report.source_edge = typical_edge(source);
   report.targets = static_cast<std::size_t>(target.survey.n_points);
   return report;
 }
@@ -164,6 +170,8 @@ TaskOf<Problem> load(Request request) {
     fail(ErrorCode::bad_argument, names.size(),
          " meshes are given, but no --pairs; give for example --pairs A:B,B:C");
   for (const std::string& name : names) problem.meshes.push_back({.name = name});
+  problem.meshes[0].part = request.source_part;
+  problem.meshes[1].part = request.target_part;
   co_await read_meshes(request, problem);
   read_motions(request, names, problem);
   if (request.voxel > 0) check_voxel(request.voxel, problem);

@@ -27,8 +27,9 @@ namespace m2m_transfer {
 /// The options of a run, as on the command line.
 struct Request {
   std::string source{}, target{};
-  std::vector<std::string> more{};  ///< further meshes
-  std::string pairs{};              ///< "A:B,B:C"; empty: source to target
+  std::string source_part{}, target_part{};  ///< as for surface_of(); empty: the whole mesh
+  std::vector<std::string> more{};           ///< further meshes
+  std::string pairs{};                       ///< "A:B,B:C"; empty: source to target
   std::vector<std::string> fields{"gaussian"};
   std::string policy = "keep";
   std::string partition = "curve";
@@ -46,11 +47,12 @@ struct Request {
   [[nodiscard]] std::int32_t chares() const;
 };
 
-/// A mesh of a run. PE 0 holds it only if it has to: if Zoltan cuts it, or the file cannot be read
-/// in ranges; and, after a run whose result is written or drawn, if a pair wrote it
+/// A mesh of a run. PE 0 holds it only if it has to: if Zoltan cuts it, if the file cannot be read
+/// in ranges, or if it is a part; and, after a run whose result is written or drawn, if a pair wrote it
 /// (bring_targets()).
 struct RunMesh {
-  std::string name{};
+  std::string name{};  ///< once it is read, with the part
+  std::string part{};  ///< as for surface_of(); empty: the whole mesh
   MeshSurvey survey{};
   std::optional<TetMesh> mesh{};  ///< with the points where they were at the start
   /// What the mesh starts with, if Zoltan cuts it. After a run that collects its results

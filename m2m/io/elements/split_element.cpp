@@ -1,5 +1,6 @@
 #include "m2m/io/elements/split_element.hpp"
 
+#include "m2m/surface/sides.hpp"
 #include "runtime/core/check.hpp"
 
 #include <algorithm>
@@ -18,7 +19,7 @@ struct Shape {
 };
 
 const Shape& shape_of(ElementType type) {
-  static const std::array<Shape, 5> shapes{{
+  static const std::array<Shape, 9> shapes{{
       {4,
        {{0, 1, 3, -1, -1, -1},
         {1, 2, 3, -1, -1, -1},
@@ -44,15 +45,33 @@ const Shape& shape_of(ElementType type) {
         {0, 4, 3, -1, -1, -1},
         {0, 3, 2, 1, -1, -1}}},
       {10, {{0, 1, 3, 4, 8, 7}, {1, 2, 3, 5, 9, 8}, {0, 3, 2, 7, 9, 6}, {0, 2, 1, 6, 5, 4}}},
+      {3, {{0, 1, -1, -1, -1, -1}, {1, 2, -1, -1, -1, -1}, {2, 0, -1, -1, -1, -1}}},
+      {6, {{0, 1, 3, -1, -1, -1}, {1, 2, 4, -1, -1, -1}, {2, 0, 5, -1, -1, -1}}},
+      {4,
+       {{0, 1, -1, -1, -1, -1},
+        {1, 2, -1, -1, -1, -1},
+        {2, 3, -1, -1, -1, -1},
+        {3, 0, -1, -1, -1, -1}}},
+      {2, {{0, -1, -1, -1, -1, -1}, {1, -1, -1, -1, -1, -1}}},
   }};
   return shapes[static_cast<std::size_t>(type)];
 }
 
-void append(const Tet& tet, std::vector<Tet>& tets) {
-  for (std::size_t a = 0; a < 4; ++a)
-    for (std::size_t b = a + 1; b < 4; ++b)
-      if (tet[a] == tet[b]) return;
-  tets.push_back(tet);
+void append(const Tet& cell, std::vector<Tet>& cells, std::int32_t dimension = 3) {
+  if (!names_corner_twice(cell, dimension)) cells.push_back(cell);
+}
+
+/// A six-node triangle gives those at its corners and that in its middle.
+void split_surface(ElementType type, std::span<const VertexId> v, std::vector<Tet>& cells) {
+  if (type == ElementType::tri6) {
+    constexpr std::size_t parts[4][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}};
+    for (const auto& [a, b, c] : parts) append({v[a], v[b], v[c], v[c]}, cells, 2);
+    return;
+  }
+  std::array<VertexId, 4> q{v[0], v[1], v[2], v[3]};
+  std::ranges::rotate(q, std::ranges::min_element(q));
+  append({q[0], q[1], q[2], q[2]}, cells, 2);
+  append({q[0], q[2], q[3], q[3]}, cells, 2);
 }
 
 /// Corners first; of the octahedron, those around its diagonal from the edge 0 2 to the edge 1 3.
@@ -76,8 +95,12 @@ void split_element(ElementType type, std::span<const VertexId> vertices, std::ve
   TESS_CHECK(vertices.size() == shape.n_vertices, "expected ", shape.n_vertices, " vertices, got ",
              vertices.size());
   if (type == ElementType::tet10) return split_tet10(vertices, tets);
-  if (type == ElementType::tet4)
-    return tets.push_back({vertices[0], vertices[1], vertices[2], vertices[3]});
+  if (is_simplex(type)) {
+    Tet& cell = tets.emplace_back();
+    for (std::size_t k = 0; k < 4; ++k) cell[k] = vertices[std::min(k, vertices.size() - 1)];
+    return;
+  }
+  if (dimension_of(type) == 2) return split_surface(type, vertices, tets);
   const VertexId apex = *std::min_element(vertices.begin(), vertices.end());
   for (const Face& side : shape.sides) {
     std::array<VertexId, 4> face{};
@@ -98,7 +121,7 @@ void ElementSplitter::add(ElementType type, std::span<const VertexId> vertices) 
     runs_.push_back({type, n_elements_, first_tet, {}, {}});
   ++n_elements_;
   split_element(type, vertices, mesh_.tets);
-  if (type == ElementType::tet4) return;
+  if (is_simplex(type)) return;
   Run& run = runs_.back();
   run.vertices.insert(run.vertices.end(), vertices.begin(), vertices.end());
   run.first_tets.push_back(first_tet);
@@ -120,7 +143,7 @@ void ElementSplitter::append_side(GlobalId element, std::int64_t side,
   const Run* const run = run_of(element);
   TESS_CHECK(run != nullptr, "there is no element ", element, " of ", n_elements_);
   const auto number = static_cast<std::size_t>(element - run->first_element);
-  if (run->type == ElementType::tet4) {
+  if (is_simplex(run->type)) {
     sides.push_back(
         {run->first_tet + static_cast<GlobalId>(number), static_cast<std::int32_t>(side)});
     return;
@@ -136,18 +159,14 @@ void ElementSplitter::append_side(GlobalId element, std::int64_t side,
       number + 1 < run->first_tets.size()
           ? run->first_tets[number + 1]
           : (next == nullptr ? static_cast<GlobalId>(mesh_.n_tets()) : next->first_tet);
-  const std::vector<Face>& sides_of_tet = shape_of(ElementType::tet4).sides;
-  for (GlobalId t = run->first_tets[number]; t < end; ++t) {
-    const Tet& tet = mesh_.tets[static_cast<std::size_t>(t)];
-    for (std::size_t s = 0; s < 4; ++s) {
-      const bool on_side = std::all_of(
-          sides_of_tet[s].begin(), sides_of_tet[s].begin() + 3, [&](std::int8_t corner) {
-            return std::find(face.begin(), face.end(), tet[static_cast<std::size_t>(corner)]) !=
-                   face.end();
-          });
-      if (on_side) sides.push_back({t, static_cast<std::int32_t>(s + 1)});
+  const std::int32_t dimension = dimension_of(run->type);
+  for (GlobalId t = run->first_tets[number]; t < end; ++t)
+    for (std::int32_t s = 1; s <= dimension + 1; ++s) {
+      const Tet corners = side_of(mesh_.tets[static_cast<std::size_t>(t)], dimension, s);
+      const bool on_side = std::ranges::all_of(
+          corners, [&](VertexId v) { return std::ranges::find(face, v) != face.end(); });
+      if (on_side) sides.push_back({t, s});
     }
-  }
 }
 
 std::uint64_t ElementSplitter::n_folded(GlobalId begin, GlobalId end) const {
@@ -166,8 +185,8 @@ std::uint64_t ElementSplitter::n_folded(GlobalId begin, GlobalId end) const {
 }
 
 void ElementSplitter::finish() {
-  const bool any = std::any_of(runs_.begin(), runs_.end(),
-                               [](const Run& run) { return run.type != ElementType::tet4; });
+  const bool any =
+      std::any_of(runs_.begin(), runs_.end(), [](const Run& run) { return !is_simplex(run.type); });
   if (!any) return;
   mesh_.element_of_tet.resize(mesh_.n_tets());
   for (std::size_t r = 0; r < runs_.size(); ++r) {
@@ -176,7 +195,7 @@ void ElementSplitter::finish() {
         r + 1 < runs_.size() ? runs_[r + 1].first_tet : static_cast<GlobalId>(mesh_.n_tets());
     GlobalId element = run.first_element;
     for (GlobalId t = run.first_tet; t < end; ++t) {
-      if (run.type == ElementType::tet4) {
+      if (is_simplex(run.type)) {
         element = run.first_element + (t - run.first_tet);
       } else {
         const auto after = std::upper_bound(run.first_tets.begin(), run.first_tets.end(), t);
@@ -184,7 +203,7 @@ void ElementSplitter::finish() {
       }
       mesh_.element_of_tet[static_cast<std::size_t>(t)] = element;
     }
-    if (run.type == ElementType::tet4) continue;
+    if (is_simplex(run.type)) continue;
     const auto known = std::find_if(mesh_.split.begin(), mesh_.split.end(), [&](const auto& split) {
       return split.type == name_of(run.type);
     });

@@ -9,7 +9,9 @@
 // A hexahedron gives six tetrahedra, a wedge three, a pyramid two. Elements with repeated vertices
 // (a wedge written as a hexahedron) give fewer. A ten-node tetrahedron gives eight: four at its
 // corners, and four of the octahedron between them (Bey 1995); tet10.hpp evaluates it as a quadratic
-// element.
+// element. Meshes of surfaces and lines have triangles (six-node ones are split into four),
+// quadrilaterals, cut as above, and edges: the "tetrahedra" of this file are cells then, as
+// TetMesh::dimension says.
 #pragma once
 
 #include "m2m/mesh.hpp"
@@ -21,19 +23,40 @@
 
 namespace tess::m2m {
 
-/// Volume elements. The order of vertices and the numbers of sides are those of ExodusII.
-enum class ElementType : std::uint8_t { tet4, hex8, wedge6, pyramid5, tet10 };
+/// The order of vertices and the numbers of sides are those of ExodusII; for surfaces those of its
+/// plane elements, whose sides are edges.
+enum class ElementType : std::uint8_t {
+  tet4,
+  hex8,
+  wedge6,
+  pyramid5,
+  tet10,
+  tri3,
+  tri6,
+  quad4,
+  edge2
+};
+
+/// 3 for elements with a volume, 2 for surfaces, 1 for edges.
+[[nodiscard]] constexpr std::int32_t dimension_of(ElementType type) noexcept {
+  return type < ElementType::tri3 ? 3 : type < ElementType::edge2 ? 2 : 1;
+}
+/// True for elements that are cells of a TetMesh as they are.
+[[nodiscard]] constexpr bool is_simplex(ElementType type) noexcept {
+  return type == ElementType::tet4 || type == ElementType::tri3 || type == ElementType::edge2;
+}
 
 [[nodiscard]] constexpr const char* name_of(ElementType type) noexcept {
-  constexpr std::array names{"TET4", "HEX8", "WEDGE6", "PYRAMID5", "TET10"};
+  constexpr std::array names{"TET4", "HEX8", "WEDGE6", "PYRAMID5", "TET10",
+                             "TRI3", "TRI6", "QUAD4",  "EDGE2"};
   return names[static_cast<std::size_t>(type)];
 }
 
 [[nodiscard]] std::size_t n_vertices(ElementType type) noexcept;
 [[nodiscard]] std::size_t n_sides(ElementType type) noexcept;
 
-/// Appends the tetrahedra of an element to `tets`, oriented as the element is. `vertices`:
-/// n_vertices(type) ids. Tetrahedra that name a vertex twice are left out.
+/// Appends the cells of an element to `tets`, oriented as the element is. `vertices`:
+/// n_vertices(type) ids. Cells that name a corner twice are left out.
 void split_element(ElementType type, std::span<const VertexId> vertices, std::vector<Tet>& tets);
 
 /// Adds elements of any type to a mesh as tetrahedra, counts those that are split, and knows which
@@ -43,7 +66,7 @@ class ElementSplitter {
   /// `mesh` must outlive the splitter; its tetrahedra are added through the splitter only.
   explicit ElementSplitter(TetMesh& mesh) : mesh_(mesh) {}
 
-  /// Elements with a volume, added so far.
+  /// Elements added so far.
   [[nodiscard]] GlobalId n_elements() const noexcept { return n_elements_; }
 
   void add(ElementType type, std::span<const VertexId> vertices);

@@ -38,7 +38,7 @@ class ExodusFields : public FieldReader, private ExodusFile {
     std::vector<double> values;
     for (std::size_t c = 0; c < n_components; ++c) {
       const std::vector<double> column = nodal ? at_vertices(mesh, field, variables[c], step)
-                                               : in_elements(field, variables[c], step);
+                                               : in_elements(mesh, field, variables[c], step);
       values.resize(column.size() * n_components);
       for (std::size_t i = 0; i < column.size(); ++i) values[i * n_components + c] = column[i];
     }
@@ -119,9 +119,9 @@ class ExodusFields : public FieldReader, private ExodusFile {
     return values;
   }
 
-  /// Per element with a volume.
-  [[nodiscard]] std::vector<double> in_elements(std::size_t field, int variable,
-                                                std::size_t step) const {
+  /// Per element of the dimension of the mesh.
+  [[nodiscard]] std::vector<double> in_elements(const TetMesh& mesh, std::size_t field,
+                                                int variable, std::size_t step) const {
     const std::int64_t n_blocks = count(EX_INQ_ELEM_BLK, "number of blocks");
     int n_variables = 0;
     check(ex_get_variable_param(id_, EX_ELEM_BLOCK, &n_variables), "ex_get_variable_param");
@@ -138,7 +138,7 @@ class ExodusFields : public FieldReader, private ExodusFile {
     for (const std::int64_t id : ids_of(EX_ELEM_BLOCK, n_blocks)) {
       const ElementBlock block = block_of(id, row + 1);
       const bool is_there = has[row++ * at(n_variables) + at(variable - 1)] != 0;
-      if (block.n_elements == 0 || !exodus_volume(block.type, block.n_vertices_each)) continue;
+      if (block.n_elements == 0 || exodus_dimension(block.type) != mesh.dimension) continue;
       if (block.n_elements < 0 || block.n_elements > most()) damaged("number of elements", -1);
       if (!is_there)
         fail(ErrorCode::bad_value, path_, ": variable '", fields_[field].name,

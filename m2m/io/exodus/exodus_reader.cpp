@@ -1,4 +1,4 @@
-// Reads the tetrahedra of an ExodusII file (NetCDF-3 or NetCDF-4) through libexodusII. The library
+// Reads the cells of an ExodusII file (NetCDF-3 or NetCDF-4) through libexodusII. The library
 // trusts the lengths that a file declares, so netcdf_header.hpp refuses a damaged NetCDF-3 header
 // first. HDF5 guards the metadata of NetCDF-4 by checksums. The library is not reentrant: one
 // thread at a time.
@@ -21,19 +21,24 @@
 namespace tess::m2m {
 namespace {
 
-constexpr const char* supported_volumes = "TET4, TET10, HEX8, WEDGE6 and PYRAMID5";
+constexpr const char* supported(std::int32_t dimension) {
+  return dimension == 3   ? "TET4, TET10, HEX8, WEDGE6 and PYRAMID5"
+         : dimension == 2 ? "TRI3, TRI6, QUAD4, SHELL3 and SHELL4"
+                          : "BAR2 and other lines of two vertices";
+}
 
 class ExodusReader : private ExodusFile {
  public:
   using ExodusFile::ExodusFile;
 
-  TetMesh read() {
+  TetMesh read(std::int32_t dimension) {
     TetMesh mesh;
     mesh.name = path_;
-    const std::int64_t n_axes = inquire(EX_INQ_DIM);
-    if (n_axes != 3) {
-      fail(ErrorCode::bad_mesh, path_, ": has ", n_axes,
-           " dimensions; give a mesh in 3 dimensions");
+    mesh.dimension = dimension;
+    n_axes_ = inquire(EX_INQ_DIM);
+    if (n_axes_ < 1 || n_axes_ > 3) {
+      fail(ErrorCode::bad_mesh, path_, ": has ", n_axes_,
+           " dimensions; give a mesh in 1 to 3 dimensions");
     }
     const std::int64_t n = count(EX_INQ_NODES, "number of nodes");
     const std::int64_t n_blocks = count(EX_INQ_ELEM_BLK, "number of blocks");
@@ -59,7 +64,7 @@ class ExodusReader : private ExodusFile {
   void read_points(TetMesh& mesh, std::int64_t n) const {
     mesh.points.resize(static_cast<std::size_t>(n));
     std::vector<double> values(mesh.n_points());
-    for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (std::size_t axis = 0; axis < static_cast<std::size_t>(n_axes_); ++axis) {
       check(read_exodus_axis(id_, axis, 0, values), "nc_get_vara of the coordinates");
       for (std::size_t i = 0; i < values.size(); ++i) mesh.points[i][axis] = values[i];
     }
@@ -72,15 +77,16 @@ class ExodusReader : private ExodusFile {
     if (block.n_elements < 0 || block.n_elements > most() - n_elements_)
       damaged("number of elements", -1);
     n_elements_ += block.n_elements;
-    const auto element = exodus_volume(block.type, block.n_vertices_each);
-    if (!element) {
-      if (exodus_has_no_volume(block.type)) return skip(mesh, block.type, block.n_elements);
+    if (exodus_dimension(block.type) < mesh.dimension)
+      return skip(mesh, block.type, block.n_elements);
+    const auto element = exodus_supported(block.type, block.n_vertices_each);
+    if (!element || dimension_of(*element) != mesh.dimension) {
       fail(ErrorCode::bad_mesh, path_, ": block ", id, " has elements of type ", block.type,
-           " with ", block.n_vertices_each, " vertices; ", supported_volumes,
+           " with ", block.n_vertices_each, " vertices; ", supported(mesh.dimension),
            " are supported: mesh it with one of these");
     }
-    element_runs_.push_back(
-        {n_elements_, elements.n_elements() - (n_elements_ - block.n_elements)});
+    element_runs_.push_back({n_elements_, elements.n_elements() - (n_elements_ - block.n_elements),
+                             exodus_faces_before_edges(block.type, n_axes_)});
     const std::size_t n_tets_before = mesh.n_tets();
     const auto n = static_cast<std::size_t>(block.n_elements);
     const std::size_t n_each = n_vertices(*element);
@@ -106,26 +112,27 @@ class ExodusReader : private ExodusFile {
     mesh.blocks.push_back({id, name_of(EX_ELEM_BLOCK, id), mesh.n_tets() - n_tets_before});
   }
 
-  void skip(TetMesh& mesh, const std::string& type, std::int64_t n) {
-    const auto known = std::find_if(mesh.skipped.begin(), mesh.skipped.end(),
-                                    [&](const Skipped& other) { return other.type == type; });
+  static void count_skipped(TetMesh& mesh, const std::string& type, std::int64_t n) {
+    const auto known = std::ranges::find(mesh.skipped, type, &Skipped::type);
     if (known == mesh.skipped.end())
       mesh.skipped.push_back({type, static_cast<std::uint64_t>(n)});
     else
       known->n_elements += static_cast<std::uint64_t>(n);
-    element_runs_.push_back({n_elements_, std::nullopt});
+  }
+  void skip(TetMesh& mesh, const std::string& type, std::int64_t n) {
+    count_skipped(mesh, type, n);
+    element_runs_.push_back({n_elements_, std::nullopt, 0});
   }
 
-  /// The number of an element of the file (counted from 1 over all blocks) among those with a
-  /// volume: -1 for an element that was skipped, -2 for an element that does not exist.
-  [[nodiscard]] GlobalId volume_of(std::int64_t element) const {
+  /// The block of an element of the file (counted from 1 over all blocks); null if there is none.
+  struct Run;
+  [[nodiscard]] const Run* run_of(std::int64_t element) const {
     const auto run = std::partition_point(element_runs_.begin(), element_runs_.end(),
                                           [&](const Run& r) { return r.last < element; });
-    if (element < 1 || run == element_runs_.end()) return -2;
-    return run->shift ? element - 1 + *run->shift : -1;
+    return element < 1 || run == element_runs_.end() ? nullptr : &*run;
   }
 
-  void read_sets(TetMesh& mesh, const ElementSplitter& elements) const {
+  void read_sets(TetMesh& mesh, const ElementSplitter& elements) {
     const std::int64_t n_side_sets = count(EX_INQ_SIDE_SETS, "number of side sets");
     const std::int64_t n_node_sets = count(EX_INQ_NODE_SETS, "number of node sets");
     std::size_t k = 0;
@@ -157,11 +164,10 @@ class ExodusReader : private ExodusFile {
     return factors;
   }
 
-  /// Leaves out the sides of skipped elements, and replaces those of split ones by the faces of
-  /// their tetrahedra. The factors of such a set are left out too, because the file does not say
-  /// which factor belongs to which side.
-  void read_side_set(TetMesh& mesh, const ElementSplitter& volumes, std::int64_t id,
-                     std::size_t k) const {
+  /// Leaves out the sides of skipped elements and the faces of shells, which are counted, and
+  /// replaces those of split elements by sides of their cells. The factors of such a set are left out
+  /// too, because the file does not say which factor belongs to which side.
+  void read_side_set(TetMesh& mesh, const ElementSplitter& cells, std::int64_t id, std::size_t k) {
     const auto [n, n_factors] = size_of(EX_SIDE_SET, id);
     check_list("elem_ss", k, n);
     check_list("side_ss", k, n);
@@ -169,14 +175,18 @@ class ExodusReader : private ExodusFile {
     if (n > 0) check(ex_get_set(id_, EX_SIDE_SET, id, elements.data(), sides.data()), "ex_get_set");
     SideSet set{id, name_of(EX_SIDE_SET, id)};
     for (std::size_t i = 0; i < n; ++i) {
-      const GlobalId element = volume_of(elements[i]);
-      if (element == -1) continue;
-      if (element < 0 || sides[i] < 1 ||
-          sides[i] > static_cast<std::int64_t>(volumes.n_sides_of(element))) {
+      const Run* const run = run_of(elements[i]);
+      if (run != nullptr && !run->shift) continue;
+      const GlobalId element = run == nullptr ? -1 : elements[i] - 1 + *run->shift;
+      if (run == nullptr || sides[i] < 1 ||
+          sides[i] > run->n_faces + static_cast<std::int64_t>(cells.n_sides_of(element))) {
         fail(ErrorCode::bad_mesh, path_, ": side set ", id, " names side ", sides[i],
              " of element ", elements[i], " of ", n_elements_, "; write the mesh again");
       }
-      volumes.append_side(element, sides[i], set.entries);
+      if (sides[i] > run->n_faces)
+        cells.append_side(element, sides[i] - run->n_faces, set.entries);
+      else
+        count_skipped(mesh, "face in a side set", 1);
     }
     if (set.entries.size() == n && mesh.split.empty())
       set.factors = factors_of(EX_SIDE_SET, id, k, n_factors);
@@ -202,9 +212,11 @@ class ExodusReader : private ExodusFile {
   /// The elements of a block of the file.
   struct Run {
     std::int64_t last;              // of the file's elements, counted from 1
-    std::optional<GlobalId> shift;  // from element - 1 to volume_of(); none if skipped
+    std::optional<GlobalId> shift;  // from element - 1 to its place among the cells' elements
+    std::int64_t n_faces;           // sides before its edges
   };
 
+  std::int64_t n_axes_ = 3;
   std::int64_t n_elements_ = 0;    // read so far, including skipped ones
   std::vector<Run> element_runs_;  // in file order
 };
@@ -213,12 +225,11 @@ bool is_netcdf(std::string_view bytes) {
   return bytes.starts_with("CDF") || bytes.starts_with("\x89HDF");
 }
 
-/// Returns all blocks of TET4 elements in file order as one mesh, with the side and node sets.
-/// Blocks of surface, line and point elements are skipped and counted. Throws Error (bad_mesh) also
-/// for fewer than three dimensions.
-TetMesh read_exodus(const std::string& path, std::string_view bytes) {
+/// Returns all blocks of elements of this dimension in file order as one mesh, with the side and node
+/// sets. Those of lower dimension are skipped and counted. Missing coordinates are 0.
+TetMesh read_exodus(const std::string& path, std::string_view bytes, std::int32_t dimension) {
   const ExodusTurn turn;
-  return ExodusReader(path, bytes).read();
+  return ExodusReader(path, bytes).read(dimension);
 }
 
 }  // namespace

@@ -120,12 +120,17 @@ void put_blocks(const PartFile& file, const TetMesh& mesh, const std::vector<Blo
   std::vector<int> vertices;
   for (const Block& block : blocks) {
     const auto n = static_cast<std::int64_t>(block.n_tets);
-    file.check(ex_put_block(file.id(), EX_ELEM_BLOCK, block.id, "TET4", n, 4, 0, 0, 0),
-               "ex_put_block");
+    constexpr std::array types{"", "BAR2", "TRI3", "TET4"};  // per dimension
+    const auto n_corners = mesh.dimension + 1;
+    file.check(
+        ex_put_block(file.id(), EX_ELEM_BLOCK, block.id,
+                     types.at(static_cast<std::size_t>(mesh.dimension)), n, n_corners, 0, 0, 0),
+        "ex_put_block");
     put_name(file, EX_ELEM_BLOCK, block.id, block.name);
     vertices.clear();
     for (std::size_t t = first; t < first + block.n_tets; ++t)
-      for (const VertexId v : mesh.tets[t]) vertices.push_back(v + 1);
+      for (const VertexId v : std::span(mesh.tets[t]).first(static_cast<std::size_t>(n_corners)))
+        vertices.push_back(v + 1);
     if (n > 0)
       file.check(ex_put_conn(file.id(), EX_ELEM_BLOCK, block.id, vertices.data(), nullptr, nullptr),
                  "ex_put_conn");
@@ -152,7 +157,8 @@ void put_sets(const PartFile& file, const TetMesh& mesh) {
     std::vector<int> elements, sides;
     for (const Side& side : set.entries) {
       elements.push_back(static_cast<int>(side.tet + 1));
-      sides.push_back(side.side);
+      // The first sides of a triangle in space are its two faces.
+      sides.push_back(side.side + (mesh.dimension == 2 ? 2 : 0));
     }
     put_set(file, EX_SIDE_SET, set, elements, sides.data());
   }

@@ -39,9 +39,15 @@ constexpr const GmshElement* gmsh_element(int number) {
   return nullptr;
 }
 
-/// The volume element of a type number, if it is supported.
-constexpr std::optional<ElementType> gmsh_volume(int number) {
+/// The element of a type number, if it is supported.
+constexpr std::optional<ElementType> gmsh_supported(int number) {
   switch (number) {
+    case 1:
+      return ElementType::edge2;
+    case 2:
+      return ElementType::tri3;
+    case 3:
+      return ElementType::quad4;
     case 4:
       return ElementType::tet4;
     case 5:
@@ -50,6 +56,8 @@ constexpr std::optional<ElementType> gmsh_volume(int number) {
       return ElementType::wedge6;
     case 7:
       return ElementType::pyramid5;
+    case 9:
+      return ElementType::tri6;
     case 11:
       return ElementType::tet10;
     default:

@@ -46,11 +46,12 @@ class GmshFields : public FieldReader {
     const bool nodal = wanted.place == FieldPlace::vertices;
     GmshTags tags;
     // The tags come from the mesh; they are not kept, since few meshes are read for their fields.
-    check_n_points(mesh, static_cast<std::int64_t>(read_gmsh(path_, bytes_, &tags).n_points()),
-                   path_);
+    check_n_points(
+        mesh, static_cast<std::int64_t>(read_gmsh(path_, bytes_, mesh.dimension, &tags).n_points()),
+        path_);
     GmshScanner file(path_, bytes_);
     GmshTagMap places;
-    const std::vector<std::uint64_t>& list = nodal ? tags.nodes : tags.volumes;
+    const std::vector<std::uint64_t>& list = nodal ? tags.nodes : tags.cells;
     places.build(list, file, nodal ? "node" : "element");
     std::vector<double> values(list.size() * wanted.n_components);
     std::vector<bool> has(list.size());
@@ -174,7 +175,7 @@ class GmshFields : public FieldReader {
         if (nodal)
           fail(ErrorCode::bad_value, path_, ": variable '", field.name, "' has a value for node ",
                tag, ", which the file does not have");
-        file.skip<double>(field.n_components);  // an element without a volume
+        file.skip<double>(field.n_components);  // an element that is no cell
         continue;
       }
       const auto row = static_cast<std::size_t>(place);

@@ -15,7 +15,8 @@
 namespace tess::m2m {
 
 struct GmshFormat {
-  bool legacy = false;  ///< 2.0 to 2.2, otherwise 4.1
+  bool legacy = false;  ///< 2.0 to 2.2, otherwise 4.0 or 4.1
+  bool is_40 = false;
   bool binary = false;
 };
 
@@ -36,10 +37,10 @@ inline GmshFormat read_gmsh_format(GmshScanner& file) {
   const int word_bytes = file.number_as_text<int>();
   // 2.0 and 2.1 are laid out as 2.2; their third label of an element is not used.
   const bool legacy = version == 2 || version == 2.1 || version == 2.2;
-  if (!legacy && version != 4.1)
+  if (!legacy && version != 4 && version != 4.1)
     file.refuse(
         "is MSH ", version,
-        "; only 2.0 to 2.2 and 4.1 are supported: convert it with gmsh -save -format msh41");
+        "; only 2.0 to 2.2, 4.0 and 4.1 are supported: convert it with gmsh -save -format msh41");
   if (kind != 0 && kind != 1) file.damaged("file type ", kind);
   if (word_bytes != 8)
     file.refuse("has numbers of ", word_bytes,
@@ -54,13 +55,13 @@ inline GmshFormat read_gmsh_format(GmshScanner& file) {
     if (one != 1) file.damaged("the byte-order mark is ", one);
   }
   file.close("$EndMeshFormat");
-  return {legacy, kind == 1};
+  return {legacy, version == 4, kind == 1};
 }
 
-/// The tags of vertices and of elements with a volume, in the order of the file.
+/// The tags of vertices and of the elements that are cells, in the order of the file.
 struct GmshTags {
   std::vector<std::uint64_t> nodes{};
-  std::vector<std::uint64_t> volumes{};
+  std::vector<std::uint64_t> cells{};
 };
 
 /// Maps tags, which may have gaps of any size, to positions.

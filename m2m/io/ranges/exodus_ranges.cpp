@@ -56,12 +56,12 @@ class ExodusRanges final : public MeshRanges {
       for (char& c : type) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
       if (block.num_entry == 0) continue;
       if (block.num_entry < 0 || block.num_entry > most - n_tets ||
-          exodus_volume(type, block.num_nodes_per_entry) != ElementType::tet4)
+          exodus_supported(type, block.num_nodes_per_entry) != ElementType::tet4)
         return false;
       blocks_.push_back({id, n_tets, block.num_entry});
       n_tets += block.num_entry;
     }
-    return true;
+    return n_tets > 0;
   }
 
   void points(GlobalId first, std::span<Point> out) override {

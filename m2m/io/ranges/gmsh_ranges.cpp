@@ -41,7 +41,7 @@ class GmshRanges final : public MeshRanges {
       if (!skipped.empty()) skipped += ", ";
       skipped += std::to_string(n) + " " + std::string(type.name);
     }
-    return have_nodes && have_elements && (check == RangeCheck::header || tags_follow(0, n_points));
+    return have_nodes && n_tets > 0 && (check == RangeCheck::header || tags_follow(0, n_points));
   }
 
   void points(GlobalId first, std::span<Point> out) override {

@@ -67,11 +67,30 @@ constexpr const VtuCell* vtu_cell(std::int64_t number) {
   return nullptr;
 }
 
-/// The volume element of a type with this number of vertices, if it is supported. A voxel is a
-/// hexahedron in another order. Lagrange cells of degree 1, and Lagrange tetrahedra of degree 2, have
-/// the points of the other types in the same order.
-constexpr std::optional<ElementType> vtu_volume(std::int64_t number, std::size_t n_vertices) {
+/// The element of a type with this number of vertices, if it is supported. A voxel is a hexahedron in
+/// another order, and a pixel a quadrilateral. Lagrange cells of degree 1, and Lagrange triangles and
+/// tetrahedra of degree 2, have the points of the other types in the same order.
+constexpr std::optional<ElementType> vtu_supported(std::int64_t number, std::size_t n_vertices) {
   switch (number) {
+    case 4:
+    case 68:
+      return n_vertices == 2 ? std::optional(ElementType::edge2) : std::nullopt;
+    case 3:
+      return ElementType::edge2;
+    case 7:
+    case 69:
+    case 70:
+      return n_vertices == 3 && number != 70   ? std::optional(ElementType::tri3)
+             : n_vertices == 4 && number != 69 ? std::optional(ElementType::quad4)
+             : n_vertices == 6 && number == 69 ? std::optional(ElementType::tri6)
+                                               : std::nullopt;
+    case 5:
+      return ElementType::tri3;
+    case 8:
+    case 9:
+      return ElementType::quad4;
+    case 22:
+      return ElementType::tri6;
     case 71:
       return n_vertices == 4    ? std::optional(ElementType::tet4)
              : n_vertices == 10 ? std::optional(ElementType::tet10)
@@ -98,10 +117,10 @@ constexpr std::optional<ElementType> vtu_volume(std::int64_t number, std::size_t
   }
 }
 
-/// True for solids, supported or not.
-constexpr bool vtu_has_volume(std::int64_t number) {
+/// 0 to 3, also of types that are not supported; -1 for a number that is no type.
+constexpr int vtu_dimension(std::int64_t number) {
   const VtuCell* const cell = vtu_cell(number);
-  return cell != nullptr && cell->dimension == 3;
+  return cell == nullptr ? -1 : cell->dimension;
 }
 
 }  // namespace tess::m2m

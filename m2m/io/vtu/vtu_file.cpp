@@ -80,6 +80,10 @@ std::optional<std::vector<T>> converted(const std::string& type, const std::stri
 }  // namespace
 
 VtuFile::VtuFile(const std::string& path, std::string_view bytes) : path_(path) {
+  if (is_legacy_vtk(bytes)) {
+    read_legacy(bytes);
+    return;
+  }
   XmlScanner xml(bytes);
   Scan scan{.bytes = bytes};
   bool has_root = false, is_complete = false;
@@ -237,6 +241,8 @@ std::vector<T> VtuFile::numbers(const VtuArray& array, std::size_t n) const {
   std::vector<T> out;
   if (array.format == "ascii") {
     out = numbers_of_text<T>(array);
+  } else if (array.format == "legacy") {
+    out = *converted<T>(array.type, std::string(array.text), encoding_.big_endian);
   } else if (array.format == "binary" || array.format == "appended") {
     const bool appended = array.format == "appended";
     if (appended && array.offset > appended_.size())

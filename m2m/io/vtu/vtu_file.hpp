@@ -1,5 +1,5 @@
-// The pieces and arrays of a VTU file (VTK XML UnstructuredGrid), which are decoded when they are
-// asked for. Arrays may be ascii, binary (base64) or appended (raw or base64), of either byte
+// The pieces and arrays of a VTU file (VTK XML UnstructuredGrid), or of a legacy VTK file, which are
+// decoded when they are asked for. Arrays may be ascii, binary (base64) or appended (raw or base64), of either byte
 // order, and compressed by zlib; other compressors are refused by name.
 #pragma once
 
@@ -9,6 +9,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -70,6 +71,8 @@ class VtuFile {
   /// An attribute that is a number. Without `otherwise` it must be there.
   [[nodiscard]] std::size_t size_of(const XmlTag& tag, std::string_view name,
                                     std::optional<std::size_t> otherwise) const;
+  class Legacy;
+  void read_legacy(std::string_view bytes);
   void read_root(const XmlTag& tag);
   [[nodiscard]] std::vector<VtuArray>& section_of_piece(std::string_view name);
   void read_array(const XmlTag& tag, Scan& scan) const;
@@ -87,7 +90,13 @@ class VtuFile {
   std::string_view appended_;
   bool appended_is_base64_ = false;
   double time_ = 0;
+  std::deque<std::string> owned_{};  // what arrays of a legacy file show
 };
+
+/// True for the first line of a legacy VTK file.
+[[nodiscard]] inline bool is_legacy_vtk(std::string_view bytes) {
+  return bytes.starts_with("# vtk DataFile Version");
+}
 
 /// A file that is open.
 struct OpenVtuFile {

@@ -1,7 +1,7 @@
-// Reads the tetrahedra of a VTU file (VTK XML UnstructuredGrid, vtu_file.hpp), or of the files that a
-// .pvtu names. Hexahedra, voxels, wedges, pyramids and quadratic tetrahedra are split, also if they
-// are written as Lagrange cells; cells without a volume are skipped and counted. Pieces are joined
-// in the order of the file; their points are not merged.
+// Reads the cells of a VTU file (VTK XML UnstructuredGrid, vtu_file.hpp), or of the files that a .pvtu
+// names. Hexahedra, voxels, wedges, pyramids, quadrilaterals and quadratic tetrahedra and triangles
+// are split, also if they are written as Lagrange cells; cells of lower dimension than the mesh are
+// skipped and counted. Pieces are joined in the order of the file; their points are not merged.
 #include "m2m/io/file_format.hpp"
 #include "m2m/io/vtu/vtu_cells.hpp"
 #include "m2m/io/vtu/vtu_file.hpp"
@@ -36,7 +36,10 @@ std::vector<std::int64_t> types_of(const VtuFile& file, const VtuPiece& piece) {
 
 class VtuMeshReader {
  public:
-  explicit VtuMeshReader(const std::string& path) { mesh_.name = path; }
+  VtuMeshReader(const std::string& path, std::int32_t dimension) {
+    mesh_.name = path;
+    mesh_.dimension = dimension;
+  }
 
   TetMesh read(const std::vector<OpenVtuFile>& files) {
     for (const OpenVtuFile& open : files)
@@ -90,17 +93,18 @@ class VtuMeshReader {
       return;
     }
     const VtuCell* const known = vtu_cell(type);
-    const auto volume = vtu_volume(type, vertices.size());
-    if (known == nullptr || (vtu_has_volume(type) && !volume))
-      fail(ErrorCode::bad_mesh, file.path(), ": cell ", cell, " is a ",
-           known == nullptr ? "cell" : known->name, " (VTK type ", type, ") of ", vertices.size(),
-           " points; of volumes, tetra, hexahedron, voxel, wedge, pyramid and quadratic tetra are "
-           "supported, also as Lagrange cells: mesh it with one of these");
-    if (!volume) {
+    if (known != nullptr && known->dimension < mesh_.dimension) {
       ++n_skipped_[static_cast<std::size_t>(type)];
       return;
     }
-    if (vertices.size() != n_vertices(*volume))
+    const auto element = vtu_supported(type, vertices.size());
+    if (!element || dimension_of(*element) != mesh_.dimension)
+      fail(ErrorCode::bad_mesh, file.path(), ": cell ", cell, " is a ",
+           known == nullptr ? "cell" : known->name, " (VTK type ", type, ") of ", vertices.size(),
+           " points; ", supported(),
+           " are supported, also as Lagrange cells: mesh it with one of "
+           "these");
+    if (vertices.size() != n_vertices(*element))
       file.damaged("cell ", cell, " of type ", known->name, " has ", vertices.size(), " vertices");
     std::array<VertexId, 10> ids{};
     const auto n_points = static_cast<std::int64_t>(mesh_.n_points() - first);
@@ -110,15 +114,21 @@ class VtuMeshReader {
              " of ", n_points, "; write the mesh again");
       ids[k] = static_cast<VertexId>(vertices[k] + static_cast<std::int64_t>(first));
     }
-    if (type == 11) {
-      std::swap(ids[2], ids[3]);
-      std::swap(ids[6], ids[7]);
-    }
-    if (*volume == ElementType::wedge6 && is_inverted(ids)) {
+    if (type == 8 || type == 11) std::swap(ids[2], ids[3]);
+    if (type == 11) std::swap(ids[6], ids[7]);
+    if (*element == ElementType::wedge6 && is_inverted(ids)) {
       std::swap(ids[1], ids[2]);
       std::swap(ids[4], ids[5]);
     }
-    elements_.add(*volume, std::span(ids).first(vertices.size()));
+    elements_.add(*element, std::span(ids).first(vertices.size()));
+  }
+
+  [[nodiscard]] const char* supported() const {
+    return mesh_.dimension == 3
+               ? "of volumes, tetra, hexahedron, voxel, wedge, pyramid and quadratic tetra"
+           : mesh_.dimension == 2
+               ? "of surfaces, triangle, quad, pixel, polygon of 3 or 4 and quadratic triangle"
+               : "of lines, line and poly line of 2";
   }
 
   /// VTK's wedges have the opposite orientation of ExodusII's; many programs write the latter.
@@ -164,7 +174,7 @@ class VtuFields : public FieldReader {
     for (const OpenVtuFile& open : files_)
       for (const VtuPiece& piece : open.file->pieces()) {
         n_points += piece.n_points;
-        append(*open.file, piece, wanted, values);
+        append(*open.file, piece, mesh.dimension, wanted, values);
       }
     if (!nodal) return values_of_tets(mesh, std::move(values), n_components, path_);
     check_n_points(mesh, static_cast<std::int64_t>(n_points), path_);
@@ -172,8 +182,8 @@ class VtuFields : public FieldReader {
   }
 
  private:
-  static void append(const VtuFile& file, const VtuPiece& piece, const FileField& wanted,
-                     std::vector<double>& values) {
+  static void append(const VtuFile& file, const VtuPiece& piece, std::int32_t dimension,
+                     const FileField& wanted, std::vector<double>& values) {
     const bool nodal = wanted.place == FieldPlace::vertices;
     const std::size_t n_components = wanted.n_components;
     const std::size_t n = nodal ? piece.n_points : piece.n_cells;
@@ -189,7 +199,7 @@ class VtuFields : public FieldReader {
     }
     const std::vector<std::int64_t> types = types_of(file, piece);
     for (std::size_t c = 0; c < n; ++c)
-      if (vtu_has_volume(types[c]))
+      if (vtu_dimension(types[c]) == dimension)
         values.insert(values.end(), all.begin() + static_cast<std::ptrdiff_t>(c * n_components),
                       all.begin() + static_cast<std::ptrdiff_t>((c + 1) * n_components));
   }
@@ -203,8 +213,10 @@ class VtuFields : public FieldReader {
   std::vector<OpenVtuFile> files_;
 };
 
-/// True if the first tag of an XML text, behind declarations and comments, is that of VTK.
+/// True for a legacy file, and if the first tag of an XML text, behind declarations and comments, is
+/// that of VTK.
 bool is_vtk(std::string_view text) {
+  if (is_legacy_vtk(text)) return true;
   std::size_t at = text.find_first_not_of(" \t\r\n");
   if (at == std::string_view::npos || text[at] != '<') return false;
   while (at != std::string_view::npos) {
@@ -216,8 +228,8 @@ bool is_vtk(std::string_view text) {
   return text.starts_with("<VTKFile");
 }
 
-TetMesh read_vtu(const std::string& path, std::string_view bytes) {
-  return VtuMeshReader(path).read(open_vtu_files(path, bytes));
+TetMesh read_vtu(const std::string& path, std::string_view bytes, std::int32_t dimension) {
+  return VtuMeshReader(path, dimension).read(open_vtu_files(path, bytes));
 }
 
 std::unique_ptr<FieldReader> vtu_fields(const std::string& path, std::string_view bytes) {
@@ -226,7 +238,7 @@ std::unique_ptr<FieldReader> vtu_fields(const std::string& path, std::string_vie
 
 }  // namespace
 
-extern const FileFormat vtu_format{"a VTU file (starts with <VTKFile)", is_vtk, read_vtu,
-                                   vtu_fields};
+extern const FileFormat vtu_format{"a VTK file (starts with <VTKFile or # vtk DataFile)", is_vtk,
+                                   read_vtu, vtu_fields};
 
 }  // namespace tess::m2m

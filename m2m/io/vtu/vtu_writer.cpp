@@ -5,6 +5,7 @@
 #include "runtime/core/error.hpp"
 #include "runtime/core/escape.hpp"
 
+#include <array>
 #include <bit>
 #include <cstdint>
 #include <fmt/core.h>
@@ -79,7 +80,8 @@ void write_vtu_file(const std::string& path, const TetMesh& mesh,
   head.line("      <Points>");
   head.array("Float64", "Points", 3, mesh.n_points() * sizeof(Point));
   head.line("      </Points>\n      <Cells>");
-  head.array("Int32", "connectivity", 1, mesh.n_tets() * sizeof(Tet));
+  const auto n_corners = static_cast<std::size_t>(mesh.dimension) + 1;
+  head.array("Int32", "connectivity", 1, mesh.n_tets() * n_corners * sizeof(VertexId));
   head.array("Int64", "offsets", 1, mesh.n_tets() * sizeof(std::int64_t));
   head.array("UInt8", "types", 1, mesh.n_tets());
   head.line("      </Cells>\n    </Piece>\n  </UnstructuredGrid>");
@@ -91,11 +93,16 @@ void write_vtu_file(const std::string& path, const TetMesh& mesh,
   for (const std::span<const Field> fields : {vertex_fields, tet_fields})
     for (const Field& field : fields) append(file, std::span(field.values));
   append(file, std::span(mesh.points));
-  append(file, std::span(mesh.tets));
+  std::vector<VertexId> corners;
   std::vector<std::int64_t> ends;
-  for (std::size_t t = 1; t <= mesh.n_tets(); ++t) ends.push_back(static_cast<std::int64_t>(4 * t));
+  for (const Tet& cell : mesh.tets) {
+    corners.insert(corners.end(), cell.begin(), cell.begin() + mesh.dimension + 1);
+    ends.push_back(static_cast<std::int64_t>(corners.size()));
+  }
+  append(file, std::span<const VertexId>(corners));
   append(file, std::span<const std::int64_t>(ends));
-  append(file, std::span<const std::uint8_t>(std::vector<std::uint8_t>(mesh.n_tets(), 10)));
+  constexpr std::array<std::uint8_t, 4> types{1, 3, 5, 10};  // per dimension: line, triangle, tetra
+  append(file, std::span<const std::uint8_t>(std::vector(mesh.n_tets(), types.at(n_corners - 1))));
   file.write("\n  </AppendedData>\n</VTKFile>\n");
   file.finish();
 }

@@ -4,6 +4,7 @@
 #include "m2m/field_file.hpp"
 #include "m2m/kuhn.hpp"
 #include "m2m/read_mesh.hpp"
+#include "m2m/surface.hpp"
 #include "m2m/write_exodus.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/run.hpp"
@@ -11,6 +12,7 @@
 
 #include <array>
 #include <cmath>
+#include <fmt/format.h>
 
 using namespace m2m_transfer;
 using tess::test::Scratch;
@@ -246,6 +248,37 @@ TEST_CASE("a vector of a file turns with its mesh, and other fields move with it
              Contains("moves the target, which stays with fields of files"));
   CHECK_THAT(refused([](auto& r) { r.moves.clear(); }),
              Contains("--steps 2 applies fields of files once"));
+}
+
+TEST_CASE("fields of a file are carried over to a part of its mesh, and written as a series",
+          "[m2m][driver]") {
+  const Scratch scratch;
+  FileFieldsRequest request;
+  request.source = request.target = source_file(scratch);
+  request.source_part = request.target_part = "skin";
+  request.fields = {"temp,v"};
+  request.kind = "nearest";
+  request.step = "all";
+  request.out = scratch.path("wall.pvd");
+  const FileFieldsReport report = moved(request);
+  CHECK(report.source == request.source + ":skin");
+  CHECK(hashes(moved(request, 3)) == hashes(report));
+  const TetMesh whole = read_mesh(request.source);
+  const SurfaceMesh skin = skin_of(whole);
+  const FieldFile source(request.source);
+  for (const std::size_t step : {0U, 7U, 19U}) {
+    const FieldFile file(scratch.path(fmt::format("wall.{}.vtu", step)));
+    CHECK(file.times() == std::vector{0.5 * static_cast<double>(step)});
+    for (const char* name : {"temp", "v"})
+      CHECK(file.vertex_field(skin.mesh, name, 0).values ==
+            rows_of(source.vertex_field(whole, name, step), skin.vertex_of_point).values);
+  }
+  CHECK(read_mesh(scratch.path("wall.19.vtu")).tets == skin.mesh.tets);
+  request.target_part = "wet";
+  CHECK_THAT(refusal(request), Contains("has no part 'wet': there are block 1, skin"));
+  request.target_part.clear();
+  request.target = scratch.path("wall.3.vtu");
+  CHECK_THAT(refusal(request), Contains("wall.3.vtu, a step of --out, would overwrite TARGET"));
 }
 
 TEST_CASE("fields, steps and weights that do not exist are refused by name", "[m2m][driver]") {
