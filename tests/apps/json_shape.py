@@ -16,6 +16,9 @@ COMMANDS = [line.split() for line in f"""
 amr --max-level 3 --cells 4 --steps 2
 amr --study --max-level 3 --cells 4 --steps 2
 amr --stability --pes 2
+fsi --panel 8 --steps 8
+fsi --study --panel 8 --steps 16
+fsi --stability
 nqueens 6
 nqueens 6 --first
 nqueens 6 --study --sim pes=4

@@ -1,0 +1,54 @@
+#include "apps/fsi/flow.hpp"
+
+#include <utility>
+
+namespace fsi {
+
+Flow::Flow(const Problem& problem)
+    : problem_(problem), strip_(problem.n_flow, problem.n_pieces, index().x) {
+  const double omega = problem_.frequency();
+  for (std::size_t i = 0; i < strip_.n_owned(); ++i) {
+    d_.push_back(problem_.exact(strip_.points()[i], 0));
+    a_.push_back(-omega * omega * d_[i]);
+    force_.push_back(-problem_.added_mass() * strip_.area(i) * a_[i]);
+  }
+  d_start_ = d_;
+  a_start_ = a_;
+  v_start_.resize(d_.size());
+}
+
+void Flow::press() {
+  const double dt = problem_.dt();
+  for (std::size_t i = 0; i < d_.size(); ++i) {
+    a_[i] = 4 * ((d_[i] - d_start_[i]) / dt - v_start_[i]) / dt - a_start_[i];
+    force_[i] = -problem_.added_mass() * strip_.area(i) * a_[i];
+  }
+}
+
+void Flow::accept() {
+  for (std::size_t i = 0; i < d_.size(); ++i)
+    v_start_[i] += 0.5 * problem_.dt() * (a_start_[i] + a_[i]);
+  d_start_ = d_;
+  a_start_ = a_;
+}
+
+void Flow::balance(tess::Callback<Balance> result) {
+  Balance mine;
+  for (std::size_t i = 0; i < d_.size(); ++i) {
+    const Point& p = strip_.points()[i];
+    mine.add(p[0], p[1], force_[i], d_[i]);
+  }
+  contribute(JoinBalances{}, mine, std::move(result));
+}
+
+void Flow::measure(tess::Callback<Measured> result) {
+  Measured mine;
+  for (std::size_t i = 0; i < d_.size(); ++i) {
+    mine.energy.add(0.5 * problem_.added_mass() * strip_.area(i) * v_start_[i] * v_start_[i]);
+    const std::pair<tess::m2m::GlobalId, double> whole{strip_.view().point_ids[i], d_[i]};
+    mine.hash += tess::hash_bytes(&whole, sizeof whole);
+  }
+  contribute(JoinMeasured{}, mine, std::move(result));
+}
+
+}  // namespace fsi

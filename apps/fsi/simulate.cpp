@@ -1,0 +1,154 @@
+#include "apps/fsi/simulate.hpp"
+
+#include "apps/fsi/flow.hpp"
+#include "apps/fsi/panel.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fsi {
+namespace {
+
+/// All that a checkpoint holds beside the pieces.
+struct State {
+  Problem problem;
+  tess::ArrayProxy<Panel> panel{};
+  tess::ArrayProxy<Flow> flow{};
+  std::int32_t step = 0;  // done
+  double factor = 0;      // of the last correction
+  double energy = 0;      // at the start
+  Outcome outcome;
+};
+
+class Codes {
+ public:
+  Codes(const Problem& problem, tess::ArrayProxy<Panel> panel, tess::ArrayProxy<Flow> flow)
+      : problem_(problem),
+        panel_(panel),
+        flow_(flow),
+        moves_(panel, flow, {.kind = tess::m2m::TransferKind::projection}) {}
+
+  tess::Task connect() {
+    co_await moves_.search();
+    forces_ = moves_.transposed();
+    co_await forces_.search();
+  }
+  void disconnect() {
+    forces_.destroy();
+    moves_.destroy();
+  }
+
+  /// The fluid hears the panel's guess, and the panel the pressure of that.
+  tess::Task meet() {
+    co_await moves_.apply<&Panel::displacement, &Flow::displacement>();
+    co_await tess::epoch([&] { flow_.broadcast<&Flow::press>(); });
+    co_await forces_.apply<&Flow::force, &Panel::load>();
+  }
+  /// The force on the panel at the start of a run.
+  tess::Task press_at_start() { return forces_.apply<&Flow::force, &Panel::load>(); }
+
+  /// A step. `factor`: of the last correction of all; it becomes that of this step's last.
+  tess::Task step(double& factor, Outcome& outcome) {
+    co_await tess::epoch([&] { panel_.broadcast<&Panel::begin>(); });
+    for (std::int32_t k = 1;; ++k) {
+      co_await meet();
+      co_await tess::epoch([&] { panel_.broadcast<&Panel::move>(); });
+      const Residual r = co_await panel_.reduce<&Panel::compare>();
+      ++outcome.n_iterations;
+      if (r.largest <= problem_.tolerance * problem_.amplitude) break;
+      if (k == problem_.most_iterations || !(r.largest < 1e6 * problem_.amplitude)) {
+        outcome.diverged = true;
+        co_return;
+      }
+      // Aitken: the factor that would have removed the residual, had the last one been right for
+      // what it changed (Irons and Tuck 1969). The first one of a step is the last one's, bounded.
+      if (problem_.adapts && k > 1 && r.sums[2].total() > 0)
+        factor *= -r.sums[1].total() / r.sums[2].total();
+      else if (problem_.adapts)
+        factor = std::copysign(std::min(std::abs(factor), problem_.relaxation), factor);
+      co_await tess::epoch([&] { panel_.broadcast<&Panel::correct>(factor); });
+    }
+    co_await tess::epoch([&] { flow_.broadcast<&Flow::accept>(); });
+  }
+
+  /// Kinetic energy of both and that of the springs.
+  tess::TaskOf<Measured> measure(double time) {
+    auto of_panel = panel_.reduce<&Panel::measure>(time);
+    auto of_flow = flow_.reduce<&Flow::measure>();
+    const Measured panel = co_await of_panel, flow = co_await of_flow;
+    co_return JoinMeasured{}(panel, flow);
+  }
+
+  /// Notes by how much the forces of both differ.
+  tess::Task compare_forces(Outcome& outcome) {
+    auto of_panel = panel_.reduce<&Panel::balance>();
+    auto of_flow = flow_.reduce<&Flow::balance>();
+    const Balance panel = co_await of_panel, flow = co_await of_flow;
+    const auto gap = [&](std::size_t i, std::size_t scale) {
+      const double all = flow.sums[scale].total();
+      return all > 0 ? std::abs(panel.sums[i].total() - flow.sums[i].total()) / all : 0;
+    };
+    kit::worsen(outcome.force_gap, gap(0, 4));
+    kit::worsen(outcome.moment_gap, std::max(gap(1, 4), gap(2, 4)));
+    kit::worsen(outcome.work_gap, gap(3, 5));
+  }
+
+ private:
+  Problem problem_;
+  tess::ArrayProxy<Panel> panel_;
+  tess::ArrayProxy<Flow> flow_;
+  tess::m2m::Coupling<Panel, Flow> moves_;
+  tess::m2m::Coupling<Flow, Panel> forces_;
+};
+
+}  // namespace
+
+tess::Task simulate(Settings& settings, Outcome& outcome, std::function<void(std::int32_t)> part) {
+  Problem& problem = settings.problem;
+  State state{.problem = problem, .factor = problem.relaxation, .outcome = {}};
+  const bool restarts = settings.checkpoints.restarts();
+  if (restarts) {
+    co_await settings.checkpoints.restart(state, problem.n_steps);
+    problem = state.problem;
+  } else {
+    state.panel = tess::create<Panel>(tess::range(problem.n_pieces), problem);
+    state.flow = tess::create<Flow>(tess::range(problem.n_pieces), problem);
+  }
+  outcome = state.outcome;
+  std::vector<tess::BalancerProxy> balancers;
+  if (settings.balance) {
+    balancers.push_back(tess::start_balancing(state.panel, *settings.balance));
+    balancers.push_back(tess::start_balancing(state.flow, *settings.balance));
+  }
+  Codes codes(problem, state.panel, state.flow);
+  co_await codes.connect();
+  if (!restarts) {
+    co_await codes.press_at_start();
+    state.energy = (co_await codes.measure(0)).energy.total();
+  }
+  Measured now;
+  while (state.step < problem.n_steps && !outcome.diverged) {
+    const std::int32_t from = state.step;
+    if (part) part(from);
+    if (from > 0 && from % settings.balance_every == 0)
+      for (const tess::BalancerProxy& balancer : balancers) co_await balancer.round();
+    const tess::Time begin = tess::now();
+    co_await codes.step(state.factor, outcome);
+    outcome.seconds += tess::seconds(tess::now() - begin);
+    state.step = from + 1;
+    now = co_await codes.measure(state.step * problem.dt());
+    kit::worsen(outcome.energy_drift, std::abs(now.energy.total() / state.energy - 1));
+    co_await codes.compare_forces(outcome);
+    outcome.error = now.error / problem.amplitude;
+    outcome.hash = now.hash;
+    state.outcome = outcome;
+    co_await settings.checkpoints.save_if_due(state, from, problem.n_steps);
+  }
+  for (const tess::BalancerProxy& balancer : balancers)
+    for (const auto& round : balancer.history()) outcome.n_moved += round.n_moved;
+  co_await tess::epoch([&] { codes.disconnect(); });
+  state.panel.destroy();
+  state.flow.destroy();
+}
+
+}  // namespace fsi
