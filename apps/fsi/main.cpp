@@ -19,6 +19,7 @@ std::vector<Settings> runs_of(const Settings& settings, bool study) {
       Problem& p = one.problem;
       p.n_panel = factor * p.n_panel / 2;
       p.n_steps = factor * p.n_steps / 2;
+      p.per_period = factor * p.per_period / 2;
       p.n_flow = p.n_substeps = 0;
       p.adapts = adapts;
       p.complete(tess::n_pes());
@@ -78,8 +79,9 @@ int start(tess::Setup& setup, int argc, char** argv) {
   driver.in(Mode::run | Mode::study);
   driver.option("--panel", problem.n_panel, "squares on an edge of the panel's mesh")
       .between(4, 512);
-  driver.option("--steps", problem.n_steps, "meetings of panel and fluid").between(4, 1'000'000);
-  driver.option("--periods", problem.periods, "of the motion").positive();
+  driver.option("--steps", problem.n_steps, "in which panel and fluid meet").between(4, 1'000'000);
+  driver.option("--per-period", problem.per_period, "steps in a period of the motion")
+      .between(8, 1'000'000);
   driver.option("--mass", problem.mass, "of the panel per area").positive();
   driver.option("--tension", problem.tension, "of the panel, force per length").positive();
   driver.option("--density", problem.density, "of the fluid").between(0, 1e9);
@@ -112,7 +114,7 @@ int start(tess::Setup& setup, int argc, char** argv) {
   driver.stability("light panels in dense fluids, each against what must hold");
   if (!driver.parse(argc, argv)) return 0;
   settings.checkpoints.check(
-      driver.line(), {"--panel", "--flow", "--pieces", "--periods", "--mass", "--tension",
+      driver.line(), {"--panel", "--flow", "--pieces", "--per-period", "--mass", "--tension",
                       "--density", "--height", "--substeps", "--relaxation", "--no-aitken"});
   problem.adapts = !one_factor;
   if (every.is_given() && !driver.is_given("--balance"))

@@ -26,7 +26,7 @@ void Problem::complete(std::int32_t n_pes) {
   if (!(least <= most_substeps))
     tess::fail(tess::ErrorCode::bad_argument, "a step of ", dt(), " takes ", least,
                " steps of the panel, and at most ", most_substeps,
-               " are taken; give more --steps, more --mass or a coarser --panel");
+               " are taken; give more --per-period, more --mass or a coarser --panel");
   if (n_substeps == 0) n_substeps = static_cast<std::int32_t>(1.25 * least) + 1;
   if (n_substeps < least)
     tess::fail(tess::ErrorCode::bad_argument, "--substeps ", n_substeps,

@@ -28,9 +28,9 @@ struct Problem {
   std::int32_t n_flow = 0;    ///< and of the fluid's wall; 0: half as many again, and one
   std::int32_t n_pieces = 0;  ///< of each mesh; 0: two per PE
   double mass = 1, tension = 1, density = 5, height = 1, amplitude = 0.01;
-  double periods = 1.25;  ///< of the exact motion, from rest at the greatest displacement
-  std::int32_t n_steps = 50;
-  std::int32_t n_substeps = 0;  ///< of the panel in a step; 0: as many as are stable
+  std::int32_t per_period = 40;  ///< steps in a period of the exact motion
+  std::int32_t n_steps = 50;     ///< from rest at the greatest displacement
+  std::int32_t n_substeps = 0;   ///< of the panel in a step; 0: as many as are stable
 
   // How panel and fluid are brought to agree in a step.
   double relaxation = 0.5;  ///< of the first correction of all
@@ -43,8 +43,7 @@ struct Problem {
 
   [[nodiscard]] double added_mass() const;  ///< per area
   [[nodiscard]] double frequency() const;   ///< ω
-  [[nodiscard]] double end() const { return periods * 2 * std::numbers::pi / frequency(); }
-  [[nodiscard]] double dt() const { return end() / n_steps; }
+  [[nodiscard]] double dt() const { return 2 * std::numbers::pi / (frequency() * per_period); }
   [[nodiscard]] double exact(const Point& p, double time) const {
     return amplitude * std::cos(frequency() * time) * std::sin(std::numbers::pi * p[0]) *
            std::sin(std::numbers::pi * p[1]);

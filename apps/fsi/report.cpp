@@ -82,6 +82,7 @@ tess::Task run_stability(std::int32_t n_pieces, kit::Cases<>& cases) {
   usual.n_panel = 8;
   usual.n_pieces = n_pieces;
   usual.n_steps = 25;
+  usual.per_period = 20;
   for (const double ratio : {0.0, 0.1, 1.0, 10.0, 100.0, 1000.0})
     for (const bool adapts : {true, false}) {
       Problem p = usual;

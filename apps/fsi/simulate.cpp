@@ -9,33 +9,31 @@
 namespace fsi {
 namespace {
 
-/// All that a checkpoint holds beside the pieces.
-struct State {
-  Problem problem;
-  tess::ArrayProxy<Panel> panel{};
-  tess::ArrayProxy<Flow> flow{};
-  std::int32_t step = 0;  // done
-  double factor = 0;      // of the last correction
-  double energy = 0;      // at the start
-  Outcome outcome;
-};
-
+/// Panel and fluid, and the couplings between them.
 class Codes {
  public:
-  Codes(const Problem& problem, tess::ArrayProxy<Panel> panel, tess::ArrayProxy<Flow> flow)
-      : problem_(problem),
-        panel_(panel),
-        flow_(flow),
-        moves_(panel, flow, {.kind = tess::m2m::TransferKind::projection}) {}
-
-  tess::Task connect() {
+  /// Creates both, and finds which point of one is at which of the other: one search for both ways.
+  tess::Task start(const Problem& problem) {
+    problem_ = problem;
+    panel_ = tess::create<Panel>(tess::range(problem.n_pieces), problem);
+    flow_ = tess::create<Flow>(tess::range(problem.n_pieces), problem);
+    moves_ = tess::m2m::Coupling(panel_, flow_, {.kind = tess::m2m::TransferKind::projection});
     co_await moves_.search();
     forces_ = moves_.transposed();
     co_await forces_.search();
+    co_await forces_.apply<&Flow::force, &Panel::load>();
   }
-  void disconnect() {
-    forces_.destroy();
-    moves_.destroy();
+  tess::Task end() {
+    co_await tess::epoch([&] {
+      forces_.destroy();
+      moves_.destroy();
+    });
+    panel_.destroy();
+    flow_.destroy();
+  }
+  [[nodiscard]] std::vector<tess::BalancerProxy> balance(
+      const tess::BalanceOptions& options) const {
+    return {tess::start_balancing(panel_, options), tess::start_balancing(flow_, options)};
   }
 
   /// The fluid hears the panel's guess, and the panel the pressure of that.
@@ -44,9 +42,6 @@ class Codes {
     co_await tess::epoch([&] { flow_.broadcast<&Flow::press>(); });
     co_await forces_.apply<&Flow::force, &Panel::load>();
   }
-  /// The force on the panel at the start of a run.
-  tess::Task press_at_start() { return forces_.apply<&Flow::force, &Panel::load>(); }
-
   /// A step. `factor`: of the last correction of all; it becomes that of this step's last.
   tess::Task step(double& factor, Outcome& outcome) {
     co_await tess::epoch([&] { panel_.broadcast<&Panel::begin>(); });
@@ -93,6 +88,12 @@ class Codes {
     kit::worsen(outcome.work_gap, gap(3, 5));
   }
 
+  /// For checkpoints: after a restart the couplings need no search.
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(problem_, panel_, flow_, moves_, forces_);
+  }
+
  private:
   Problem problem_;
   tess::ArrayProxy<Panel> panel_;
@@ -101,31 +102,33 @@ class Codes {
   tess::m2m::Coupling<Flow, Panel> forces_;
 };
 
+/// All that a checkpoint holds beside the pieces.
+struct State {
+  Problem problem;
+  Codes codes{};
+  std::int32_t step = 0;  // done
+  double factor = 0;      // of the last correction
+  double energy = 0;      // at the start
+  Outcome outcome;
+};
+
 }  // namespace
 
 tess::Task simulate(Settings& settings, Outcome& outcome, std::function<void(std::int32_t)> part) {
   Problem& problem = settings.problem;
   State state{.problem = problem, .factor = problem.relaxation, .outcome = {}};
-  const bool restarts = settings.checkpoints.restarts();
-  if (restarts) {
+  Codes& codes = state.codes;
+  if (settings.checkpoints.restarts()) {
     co_await settings.checkpoints.restart(state, problem.n_steps);
+    state.problem.n_steps = problem.n_steps;
     problem = state.problem;
   } else {
-    state.panel = tess::create<Panel>(tess::range(problem.n_pieces), problem);
-    state.flow = tess::create<Flow>(tess::range(problem.n_pieces), problem);
+    co_await codes.start(problem);
+    state.energy = (co_await codes.measure(0)).energy.total();
   }
   outcome = state.outcome;
   std::vector<tess::BalancerProxy> balancers;
-  if (settings.balance) {
-    balancers.push_back(tess::start_balancing(state.panel, *settings.balance));
-    balancers.push_back(tess::start_balancing(state.flow, *settings.balance));
-  }
-  Codes codes(problem, state.panel, state.flow);
-  co_await codes.connect();
-  if (!restarts) {
-    co_await codes.press_at_start();
-    state.energy = (co_await codes.measure(0)).energy.total();
-  }
+  if (settings.balance) balancers = codes.balance(*settings.balance);
   Measured now;
   while (state.step < problem.n_steps && !outcome.diverged) {
     const std::int32_t from = state.step;
@@ -146,9 +149,7 @@ tess::Task simulate(Settings& settings, Outcome& outcome, std::function<void(std
   }
   for (const tess::BalancerProxy& balancer : balancers)
     for (const auto& round : balancer.history()) outcome.n_moved += round.n_moved;
-  co_await tess::epoch([&] { codes.disconnect(); });
-  state.panel.destroy();
-  state.flow.destroy();
+  co_await codes.end();
 }
 
 }  // namespace fsi
