@@ -2,6 +2,7 @@
 
 #include "m2m/kuhn.hpp"
 #include "m2m/read_mesh.hpp"
+#include "m2m/surface/sides.hpp"
 #include "tests/m2m/element_meshes.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/scratch.hpp"
@@ -47,15 +48,11 @@ TetMesh named_cube() {
   });
   mesh.blocks = {{7, "lower", 24}, {3, "", 24}};
   SideSet inlet{4, "inlet", {}, {}};
-  const SurfaceMesh skin = skin_of(mesh);
   for (std::size_t t = 0; t < mesh.n_tets(); ++t)
-    for (std::int32_t s = 1; s <= 4; ++s) {
-      constexpr std::size_t opposite[] = {2, 0, 1, 3};
-      bool on_plane = true;
-      for (std::size_t k = 0; k < 4; ++k)
-        if (k != opposite[s - 1]) on_plane = on_plane && at(mesh, mesh.tets[t][k])[0] == 0;
-      if (on_plane) inlet.entries.push_back({static_cast<GlobalId>(t), s});
-    }
+    for (std::int32_t s = 1; s <= 4; ++s)
+      if (std::ranges::all_of(side_of(mesh.tets[t], 3, s),
+                              [&](VertexId v) { return at(mesh, v)[0] == 0; }))
+        inlet.entries.push_back({static_cast<GlobalId>(t), s});
   inlet.entries.push_back(inlet.entries.front());
   mesh.side_sets = {inlet, {3, "", {inlet.entries[0]}, {}}, {5, "none", {}, {}}};
   return mesh;

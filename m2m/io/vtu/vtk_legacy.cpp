@@ -96,8 +96,7 @@ class VtuFile::Legacy {
       section_ = keyword[0] == 'p' ? &piece().point_data : &piece().cell_data;
       n_rows_ = count(0);
     } else if (keyword == "metadata") {
-      while (!line().empty()) {
-      }
+      skip_metadata();
     } else if (keyword == "field") {
       word();
       const std::size_t n_arrays = count(1);
@@ -106,6 +105,13 @@ class VtuFile::Legacy {
       file_.damaged("'", clean_name(keyword.substr(0, 40)), "' is no section");
     } else {
       attribute(keyword);
+    }
+  }
+
+  /// Up to the next empty line.
+  void skip_metadata() {
+    line();  // the rest of this one
+    while (!line().empty()) {
     }
   }
 
@@ -150,8 +156,7 @@ class VtuFile::Legacy {
   void array_of_field() {
     const std::string name = decoded(raw_word());
     if (name == "METADATA") {  // of the array before
-      while (!line().empty()) {
-      }
+      skip_metadata();
       return array_of_field();
     }
     const std::size_t n_components = count(1), n_rows = count(1);

@@ -1,8 +1,9 @@
 // Files of surfaces and lines, and named surfaces in files of volumes.
 #include "m2m/field_file.hpp"
+#include "m2m/io/elements/split_element.hpp"
 #include "m2m/io/gmsh/gmsh_reader.hpp"
+#include "m2m/io/ranges/mesh_ranges.hpp"
 #include "m2m/kuhn.hpp"
-#include "m2m/placement.hpp"
 #include "m2m/read_mesh.hpp"
 #include "m2m/surface.hpp"
 #include "m2m/write_exodus.hpp"
@@ -149,7 +150,7 @@ void check_round_trip(const TetMesh& mesh) {
     const FieldFile file(path);
     CHECK(bits_of(file.vertex_field(read, "u", 0).values) == bits_of(at_vertices[0].values));
     CHECK(bits_of(file.tet_field(read, "q", 0).values) == bits_of(in_cells[0].values));
-    CHECK_FALSE(is_read_in_ranges(path));
+    CHECK(open_ranges(path) == nullptr);
     damage_everywhere(name, slurp(path), 60, 300, read_all);
   }
 }
@@ -210,7 +211,7 @@ TEST_CASE("a gmsh file without solids is a mesh of surfaces or of lines", "[m2m]
       CHECK(mesh.side_sets ==
             std::vector<SideSet>{{4, "below", {{1, 3}, {2, 1}}, {}}, {5, "between", {{1, 2}}, {}}});
       CHECK(skipped_text(mesh) == "1 line2, 1 point");  // the line that is no edge
-      CHECK_FALSE(is_read_in_ranges(path));
+      CHECK(open_ranges(path) == nullptr);
       CHECK(surface_of(mesh, "below").mesh.dimension == 1);
       damage_everywhere("plane.msh", bytes, 60, 200, read_all);
       const TetMesh lines = read_gmsh("lines", bytes, 1);
