@@ -42,4 +42,5 @@
 #include "m2m/overset/blanking.hpp"
 #include "m2m/overset/boundary.hpp"
 #include "m2m/overset/roles.hpp"
+#include "m2m/overset/symmetry.hpp"
 #include "m2m/overset/wall.hpp"

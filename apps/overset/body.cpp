@@ -106,8 +106,42 @@ Skeleton torus(const Body& body) {
   return out;
 }
 
+/// The part on one side of the planes through the centre.
+Skeleton cut(Skeleton all, const std::array<std::int32_t, 3>& half) {
+  constexpr double rounding = 1e-12;
+  Skeleton out;
+  std::map<VertexId, VertexId> number;
+  const auto at = [&](VertexId v) -> auto& { return all.points[static_cast<std::size_t>(v)]; };
+  for (const Triangle& triangle : all.triangles) {
+    bool is_beyond = false;
+    for (std::size_t k = 0; k < 3; ++k) {
+      double low = 0, high = 0;
+      for (const VertexId v : triangle) {
+        auto& [inner, outer] = at(v);
+        if (std::abs(inner[k]) < rounding) inner[k] = outer[k] = 0;
+        low = std::min(low, half[k] * inner[k]);
+        high = std::max(high, half[k] * inner[k]);
+      }
+      if (low < 0 && high > 0)
+        tess::fail(tess::ErrorCode::bad_argument, "a triangle of the body crosses the plane of ",
+                   "symmetry across ", "xyz"[k], "; give an even number, for a torus 4, 8, …");
+      is_beyond = is_beyond || low < 0;
+    }
+    if (is_beyond) continue;
+    out.triangles.push_back(triangle);
+    for (const VertexId v : triangle) number[v] = 0;
+  }
+  for (auto& [old, now] : number) {
+    now = static_cast<VertexId>(out.points.size());
+    out.points.push_back(at(old));
+  }
+  for (Triangle& triangle : out.triangles)
+    for (VertexId& v : triangle) v = number[v];
+  return out;
+}
+
 Skeleton skeleton_of(const Body& body) {
-  return body.shape == Body::Shape::torus ? torus(body) : star_shaped(body);
+  return cut(body.shape == Body::Shape::torus ? torus(body) : star_shaped(body), body.half);
 }
 
 Point placed(const Body& body, Point p) {
@@ -133,15 +167,45 @@ bool names_body(std::string_view name) {
   });
 }
 
-Body parse_body(std::string_view name) {
+Body parse_body(std::string_view name, std::span<const tess::m2m::SymmetryPlane> symmetry) {
   Body body;
   const std::size_t colon = std::min(name.find(':'), name.size() - 1);
+  const std::size_t end = std::min(name.find('@'), name.size());
   for (const auto& [word, shape] : shapes)
     if (name.substr(0, colon) == word) body.shape = shape;
-  body.n = tess::parse_number<decltype(body.n)>(name.substr(colon + 1)).value_or(0);
+  const std::string_view size = name.substr(colon + 1, end - std::min(end, colon + 1));
+  body.n = tess::parse_number<decltype(body.n)>(size).value_or(0);
   if (body.shape == Body::Shape::torus) body.radius = 0.32;
   if (body.n < 2 || body.n > 200)
     tess::fail(tess::ErrorCode::bad_argument, name, ": give a number from 2 to 200, as in ball:12");
+  for (auto plane : symmetry) {
+    plane.tolerance = HUGE_VAL;
+    tess::m2m::project({&body.centre, 1}, {&plane, 1});
+  }
+  std::vector<double> place;
+  for (std::string_view text = name.substr(end); !text.empty();) {
+    text.remove_prefix(1);
+    const auto number = tess::take_number<double>(text);
+    if (!number || !std::isfinite(*number) || !(text.empty() || text[0] == ':')) place.resize(9);
+    if (place.size() > 4) break;
+    place.push_back(*number);
+  }
+  if (end < name.size() &&
+      (place.size() < 3 || place.size() > 4 || !(place.back() > 0 || place.size() == 3)))
+    tess::fail(tess::ErrorCode::bad_argument, name,
+               ": after @ give a centre, or a centre and a radius, as in ball:12@0.5:0.5:0:0.2");
+  if (place.size() > 2) body.centre = {place[0], place[1], place[2]};
+  if (place.size() > 3) body.radius = place[3];
+  for (const auto& plane : symmetry) {
+    if (!plane.holds(body.centre)) continue;
+    const auto axis = std::find_if(plane.normal.begin(), plane.normal.end(),
+                                   [](double x) { return std::abs(x) == 1; });
+    if (axis == plane.normal.end())
+      tess::fail(tess::ErrorCode::bad_argument, name, ": a generated body cannot be cut at ",
+                 text_of(plane), "; give a plane across an axis, or a centre that is not in it");
+    body.half[static_cast<std::size_t>(axis - plane.normal.begin())] = *axis > 0 ? 1 : -1;
+    body.turn = {};
+  }
   return body;
 }
 

@@ -14,12 +14,19 @@ void Grid::cut() {
   blanking_.cut(mesh_view(), load_.walls, load_.on_outer, load_.options);
   for (std::size_t v = 0; v < load_.values.size(); ++v)
     if (blanking_.roles()[v] == tess::m2m::Role::hole) load_.values[v] = 0;
-  taken_.assign(static_cast<std::size_t>(load_.part.n_owned), 0);
+  taken_.clear();
 }
 
-void Grid::use(std::int32_t mesh_number) {
-  for (std::size_t v = 0; v < taken_.size(); ++v)
-    if (blanking_.iblank()[v] == -mesh_number) load_.values[v] = taken_[v];
+std::span<double> Grid::taken(tess::m2m::CouplingId from) {
+  std::vector<double>& taken = taken_[from];
+  taken.resize(static_cast<std::size_t>(load_.part.n_owned));
+  return taken;
+}
+
+void Grid::use(tess::m2m::CouplingId from, std::int32_t mesh_number) {
+  const std::span<const double> taken = this->taken(from);
+  for (std::size_t v = 0; v < taken.size(); ++v)
+    if (blanking_.iblank()[v] == -mesh_number) load_.values[v] = taken[v];
 }
 
 void Grid::gather(tess::Callback<Rows> result) {

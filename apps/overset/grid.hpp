@@ -1,4 +1,4 @@
-// A piece of one of the two meshes, as a chare of the program: it holds its part of the mesh and
+// A piece of one of the meshes, as a chare of the program: it holds its part of the mesh and
 // the values, and the library sees spans. What the library does for it is Piece and Blanking.
 #pragma once
 
@@ -8,6 +8,7 @@
 #include "runtime/runtime.hpp"
 
 #include <cstdint>
+#include <map>
 #include <vector>
 
 namespace overset {
@@ -16,7 +17,7 @@ namespace overset {
 struct GridLoad {
   tess::m2m::MeshPart part;
   std::vector<std::uint8_t> on_outer{};  ///< per point of the part, or empty
-  std::vector<tess::m2m::Wall> walls{};  ///< of the other mesh, as seen from the part
+  std::vector<tess::m2m::Wall> walls{};  ///< of the other meshes, as seen from the part
   std::vector<double> values{};          ///< per point of the part
   tess::m2m::BlankingOptions options{};
 };
@@ -41,7 +42,7 @@ class Grid : public tess::Chare<Grid, tess::Index1>, public tess::m2m::Piece<Gri
     blanking_.settle(mesh_view(), from, status(from), mesh_number);
   }
   /// Writes the values that have arrived from the mesh to the fringe.
-  void use(std::int32_t mesh_number);
+  void use(tess::m2m::CouplingId from, std::int32_t mesh_number);
   void report(tess::Callback<tess::m2m::BlankingReport> result) {
     contribute(tess::m2m::JoinBlankingReports{}, blanking_.report(mesh_view()), std::move(result));
   }
@@ -54,7 +55,7 @@ class Grid : public tess::Chare<Grid, tess::Index1>, public tess::m2m::Piece<Gri
     return blanking_.offered(from);
   }
   [[nodiscard]] std::span<const double> values() const { return load_.values; }
-  [[nodiscard]] std::span<double> taken() { return taken_; }
+  [[nodiscard]] std::span<double> taken(tess::m2m::CouplingId from);
 
   template <class Ar>
   void serialize(Ar& ar) {
@@ -64,7 +65,7 @@ class Grid : public tess::Chare<Grid, tess::Index1>, public tess::m2m::Piece<Gri
  private:
   GridLoad load_;
   tess::m2m::Blanking blanking_;
-  std::vector<double> taken_;  // per point owned
+  std::map<tess::m2m::CouplingId, std::vector<double>> taken_;  // per point owned
 };
 
 }  // namespace overset

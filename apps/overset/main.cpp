@@ -1,5 +1,5 @@
-// A mesh around a body overlaps a background mesh: cuts the hole, finds the donors of the fringes,
-// and moves a field between the two.
+// Meshes around bodies overlap a background mesh: cuts the holes, finds the donors of the fringes,
+// and moves a field between the meshes.
 #include "apps/kit/driver.hpp"
 #include "apps/kit/worst.hpp"
 #include "apps/overset/body.hpp"
@@ -10,6 +10,7 @@
 
 #include <cmath>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace overset {
 namespace {
@@ -27,7 +28,8 @@ constexpr kit::Modes wall_mode = kit::Mode::own(0);
 Problem problem_of(const Options& options) {
   Problem problem = read_problem(options.request);
   problem.field = options.problem.field;
-  problem.options = options.problem.options;
+  problem.options.fringe_layers = options.problem.options.fringe_layers;
+  problem.options.least_quality = options.problem.options.least_quality;
   problem.n_parts = options.problem.n_parts > 0 ? options.problem.n_parts : 2 * tess::n_pes();
   return problem;
 }
@@ -42,8 +44,8 @@ tess::Task run_once(const Options& options, kit::Driver& driver) {
   driver.write(std::array{report(problem, assembly)});
   if (options.plot.empty()) co_return;
   write(problem, assembly, options.plot);
-  tess::print("wrote before.svg, after.svg, background.exo and overset.exo to ", options.plot,
-              "\n");
+  tess::print("wrote before.svg, after.svg, background.exo and overset.exo",
+              options.request.overset.size() > 1 ? " and more" : "", " to ", options.plot, "\n");
 }
 
 /// Both meshes refined together: the background of n cubes, the mesh around the body of n / 2
@@ -55,7 +57,7 @@ tess::Task run_refined(Options options, kit::Driver& driver) {
     driver.progress().phase("assembly");
     driver.progress().part(rows.size() + 1, options.refinements.size());
     options.request.background = fmt::format("kuhn:{}", n);
-    options.request.overset = fmt::format("{}:{}", options.body, n / 2);
+    options.request.overset = {fmt::format("{}:{}", options.body, n / 2)};
     const Problem problem = problem_of(options);
     const Assembly assembly = co_await assemble(problem);
     StudyRow row{
@@ -114,7 +116,9 @@ void read_study(Options& options, kit::Driver& driver) {
   driver.enter(options.study == "h" ? kit::Mode::study : wall_mode, study);
   std::string& background = options.request.background;
   bool has_background = driver.is_given("BACKGROUND");
-  options.body = driver.is_given("OVERSET") ? options.request.overset : "ball";
+  options.body = driver.is_given("OVERSET")
+                     ? fmt::format("{}", fmt::join(options.request.overset, " "))
+                     : "ball";
   if (has_background && !driver.is_given("OVERSET") && names_shape(background)) {
     options.body = background;
     has_background = false;
@@ -134,7 +138,7 @@ void check_files(const Options& options, kit::Driver& driver) {
   kit::FileNames& files = driver.files();
   if (options.study.empty()) {
     files.reads("BACKGROUND", options.request.background);
-    files.reads("OVERSET", options.request.overset);
+    for (const std::string& name : options.request.overset) files.reads("OVERSET", name);
     files.reads("--wall", options.request.wall);
   }
   if (options.plot.empty()) return;
@@ -142,6 +146,8 @@ void check_files(const Options& options, kit::Driver& driver) {
   if (!options.study.empty()) return files.writes_picture(what, options.plot + "/study.svg");
   for (const char* file : {"background.exo", "overset.exo", "before.svg", "after.svg"})
     files.writes(what, options.plot + "/" + file);
+  for (std::size_t k = 2; k <= options.request.overset.size(); ++k)
+    files.writes(what, fmt::format("{}/overset{}.exo", options.plot, k));
 }
 
 int run(tess::Setup& setup, int argc, char** argv) {
@@ -156,9 +162,11 @@ int run(tess::Setup& setup, int argc, char** argv) {
       "BACKGROUND", options.request.background,
       "mesh: an ExodusII, gmsh or VTU file, or kuhn:N, the unit cube of 6 N^3 tetrahedra; with "
       "--study h a ladder such as kuhn:16,24,32");
-  driver.option("OVERSET", options.request.overset,
-                "mesh around a body: a file, or ball:N, box:N, star:N, torus:N; with --study ball, "
-                "box, star or torus");
+  driver.option(
+      "OVERSET", options.request.overset,
+      "mesh around a body: a file, or ball:N, box:N, star:N, torus:N, as ball:12@X:Y:Z:RADIUS "
+      "in another place; with --study ball, box, star or torus. Each further one is "
+      "another body");
   driver.json("write the report and the orphans, or the rows of a study, to this file");
   driver
       .option("--study", options.study,
@@ -182,6 +190,12 @@ int run(tess::Setup& setup, int argc, char** argv) {
   driver.option("--wall WALL", options.request.wall,
                 "the wall: a side set of OVERSET (its name, or its number if it has none), or an "
                 "OBJ, PLY or STL file (default: the cavities of OVERSET)");
+  driver
+      .option("--symmetry PLANES", options.request.symmetry,
+              "sides of BACKGROUND that are planes of symmetry, on which bodies stand: z=0, or "
+              "z=0,y=0, or "
+              "0.6:0.8:0=2 for 0.6 x + 0.8 y = 2")
+      .separated_by(',');
   driver.explain("print what this run does, step by step");
   if (!driver.parse(argc, argv)) return 0;
   if (!options.study.empty()) read_study(options, driver);

@@ -3,6 +3,7 @@
 #include "apps/kit/output/canvas.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace overset {
 namespace {
@@ -16,22 +17,23 @@ using tess::m2m::VertexId;
 
 constexpr double width = 800;
 
-/// The plane z = at, and how the picture scales.
+/// The plane across `depth` at `at`, what is to the right and up in it, and how the picture scales.
 struct View {
   Aabb box{};
+  std::size_t right = 0, up = 1, depth = 2;
   double at = 0;
 
   [[nodiscard]] double scale() const {
-    return width / std::max(box.hi[0] - box.lo[0], box.hi[1] - box.lo[1]);
+    return width / std::max(box.hi[right] - box.lo[right], box.hi[up] - box.lo[up]);
   }
-  [[nodiscard]] double height() const { return (box.hi[1] - box.lo[1]) * scale(); }
+  [[nodiscard]] double height() const { return (box.hi[up] - box.lo[up]) * scale(); }
 };
 
 /// Appends the polygon in which the plane meets a tetrahedron.
 void append_cut(kit::Path& path, const TetMesh& mesh, const Tet& tet, const View& view) {
   const auto point = [&](VertexId v) { return mesh.points[static_cast<std::size_t>(v)]; };
   std::vector<VertexId> below, above;
-  for (const VertexId v : tet) (point(v)[2] < view.at ? below : above).push_back(v);
+  for (const VertexId v : tet) (point(v)[view.depth] < view.at ? below : above).push_back(v);
   if (below.empty() || above.empty()) return;
   std::vector<std::pair<VertexId, VertexId>> edges;
   for (const VertexId low : below)
@@ -39,9 +41,11 @@ void append_cut(kit::Path& path, const TetMesh& mesh, const Tet& tet, const View
   if (edges.size() == 4) std::swap(edges[2], edges[3]);  // around the quadrilateral
   for (std::size_t i = 0; i < edges.size(); ++i) {
     const Point p = point(edges[i].first), q = point(edges[i].second);
-    const double t = (view.at - p[2]) / (q[2] - p[2]);
-    const kit::Point at{(p[0] + t * (q[0] - p[0]) - view.box.lo[0]) * view.scale(),
-                        view.height() - (p[1] + t * (q[1] - p[1]) - view.box.lo[1]) * view.scale()};
+    const double t = (view.at - p[view.depth]) / (q[view.depth] - p[view.depth]);
+    const auto along = [&](std::size_t k) {
+      return (p[k] + t * (q[k] - p[k]) - view.box.lo[k]) * view.scale();
+    };
+    const kit::Point at{along(view.right), view.height() - along(view.up)};
     i == 0 ? path.move(at) : path.line(at);
   }
   path.close();
@@ -66,14 +70,27 @@ Look look_of(const Tet& tet, const std::vector<std::int32_t>& iblank) {
 
 std::string picture(const Problem& problem, const Assembly& assembly, Moment moment) {
   View view;
-  view.box = tess::collide::merged(bounds(problem.meshes[0]), bounds(problem.meshes[1]));
-  const Aabb wall = problem.wall.box();
-  view.at = wall.lo[2] + 0.503 * (wall.hi[2] - wall.lo[2]);  // not through a layer of vertices
+  view.box = bounds(problem.meshes[0]);
+  for (const TetMesh& mesh : problem.meshes)
+    view.box = tess::collide::merged(view.box, bounds(mesh));
+  Aabb middle = problem.walls[0].box();
+  if (!problem.options.symmetry.empty()) {
+    const Point& n = problem.options.symmetry[0].normal;
+    for (std::size_t k = 0; k < 3; ++k)
+      if (std::abs(n[k]) > std::abs(n[view.up])) view.up = k;
+    view.right = view.up == 0 ? 1 : 0;
+    view.depth = 3 - view.up - view.right;
+    middle = bounds(problem.meshes[1]);  // without what closes the wall
+  }
+  // Not through a layer of vertices.
+  view.at = middle.lo[view.depth] + 0.503 * (middle.hi[view.depth] - middle.lo[view.depth]);
   kit::Canvas canvas({.width = width, .height = view.height(), .margin = 10});
-  constexpr std::array<const char*, 2> strokes{"#2c4a6e", "#b3541e"};
-  constexpr std::array<std::array<const char*, 3>, 2> fills{
-      {{"none", "#b9d3ee", "#e00000"}, {"none", "#f6d5b8", "#e00000"}}};
-  for (std::size_t number = 0; number < 2; ++number) {
+  constexpr std::array<const char*, 3> strokes{"#2c4a6e", "#b3541e", "#3f7d3a"};
+  constexpr std::array<std::array<const char*, 3>, 3> fills{{{"none", "#b9d3ee", "#e00000"},
+                                                             {"none", "#f6d5b8", "#e00000"},
+                                                             {"none", "#cbe6c5", "#e00000"}}};
+  for (std::size_t number = 0; number < problem.meshes.size(); ++number) {
+    const std::size_t colour = number == 0 ? 0 : 1 + (number - 1) % 2;
     const TetMesh& mesh = problem.meshes[number];
     std::array<kit::Path, 3> paths;
     for (const Tet& tet : mesh.tets) {
@@ -84,7 +101,7 @@ std::string picture(const Problem& problem, const Assembly& assembly, Moment mom
     for (std::size_t look = 0; look < 3; ++look)
       canvas.path(
           paths[look],
-          {.fill = fills[number][look], .stroke = strokes[number], .width = 0.6, .opacity = 0.8});
+          {.fill = fills[colour][look], .stroke = strokes[colour], .width = 0.6, .opacity = 0.8});
   }
   return canvas.svg();
 }

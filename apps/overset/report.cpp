@@ -4,7 +4,9 @@
 #include "apps/overset/picture.hpp"
 #include "m2m/write_exodus.hpp"
 
+#include <algorithm>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace overset {
 namespace {
@@ -12,10 +14,29 @@ namespace {
 using tess::m2m::BlankingReport;
 using tess::m2m::Orphan;
 
-constexpr std::array names{"background", "overset"};
+std::string mesh_name(std::size_t number) {
+  if (number == 0) return "background";
+  return number == 1 ? "overset" : fmt::format("overset{}", number);
+}
+
+/// Counts of all walls.
+struct WallSums {
+  std::size_t n_triangles = 0, n_capped = 0, n_on_symmetry = 0;
+  double cap_share = 0;  ///< the largest
+};
+WallSums sums_of(const Problem& problem) {
+  WallSums out;
+  for (const tess::m2m::Wall& wall : problem.walls) {
+    out.n_triangles += wall.n_triangles();
+    out.n_capped += wall.rim().n_loops;
+    out.n_on_symmetry += wall.rim().n_on_symmetry;
+    out.cap_share = std::max(out.cap_share, wall.rim().cap_share);
+  }
+  return out;
+}
 
 struct MeshRow {
-  const char* name;
+  std::string name;
   const Assembled& mesh;
 };
 using R = const MeshRow&;
@@ -45,7 +66,9 @@ constexpr kit::Column<MeshRow> mesh_columns[] = {
     {"orphan_list", "", nullptr, orphan_list}};
 
 std::vector<MeshRow> rows_of(const Assembly& assembly) {
-  return {{names[0], assembly.meshes[0]}, {names[1], assembly.meshes[1]}};
+  std::vector<MeshRow> rows;
+  for (const Assembled& mesh : assembly.meshes) rows.push_back({mesh_name(rows.size()), mesh});
+  return rows;
 }
 
 constexpr kit::Column<StudyRow> study_columns[] = {
@@ -61,22 +84,24 @@ constexpr kit::Column<StudyRow> study_columns[] = {
 }  // namespace
 
 std::string table(const Request& request, const Problem& problem, const Assembly& assembly) {
+  const WallSums wall = sums_of(problem);
   std::string out = fmt::format("{} with {} in it; wall: {} triangles", request.background,
-                                request.overset, problem.wall.n_triangles());
-  if (const auto& rim = problem.wall.rim(); rim.n_edges > 0)
-    out += fmt::format(", {} holes capped, {:.2g} of the area", rim.n_loops, rim.cap_share);
+                                fmt::join(request.overset, " and "), wall.n_triangles);
+  if (wall.n_on_symmetry > 0) out += ", closed beyond " + text_of(problem.options.symmetry);
+  if (wall.n_capped > 0)
+    out += fmt::format(", {} holes capped, {:.2g} of the area", wall.n_capped, wall.cap_share);
   if (!problem.wall_remarks.empty()) out += fmt::format(" ({})", problem.wall_remarks);
-  for (std::size_t i = 0; i < 2; ++i)
+  for (std::size_t i = 0; i < problem.meshes.size(); ++i)
     if (const std::string skipped = skipped_text(problem.meshes[i]); !skipped.empty())
-      out += fmt::format("\n  skipped in {}: {}", names[i], skipped);
+      out += fmt::format("\n  skipped in {}: {}", mesh_name(i), skipped);
   out += '\n' + kit::Rows(mesh_columns).table(rows_of(assembly));
   out += fmt::format("  seconds: cut {:.4f}, search {:.4f}, exchange {:.4f}; hash {:016x}\n",
                      assembly.cut, assembly.search, assembly.exchange, assembly.hash);
-  for (std::size_t i = 0; i < 2; ++i) {
+  for (std::size_t i = 0; i < assembly.meshes.size(); ++i) {
     const BlankingReport& r = assembly.meshes[i].report;
     for (std::size_t k = 0; k < std::min<std::size_t>(r.orphans.size(), 10); ++k) {
       const Orphan& orphan = r.orphans[k];
-      out += fmt::format("  orphan: {} point {} at ({:.6g}, {:.6g}, {:.6g}): {}\n", names[i],
+      out += fmt::format("  orphan: {} point {} at ({:.6g}, {:.6g}, {:.6g}): {}\n", mesh_name(i),
                          orphan.point, orphan.at[0], orphan.at[1], orphan.at[2],
                          name_of(orphan.reason));
     }
@@ -88,10 +113,12 @@ std::string table(const Request& request, const Problem& problem, const Assembly
 }
 
 Json report(const Problem& problem, const Assembly& assembly) {
+  const WallSums wall = sums_of(problem);
   return {{"wall",
-           {{"triangles", problem.wall.n_triangles()},
-            {"holes_capped", problem.wall.rim().n_loops},
-            {"cap_share", problem.wall.rim().cap_share}}},
+           {{"triangles", wall.n_triangles},
+            {"holes_in_symmetry", wall.n_on_symmetry},
+            {"holes_capped", wall.n_capped},
+            {"cap_share", wall.cap_share}}},
           {"chares", problem.n_parts},
           {"seconds",
            {{"cut", assembly.cut}, {"search", assembly.search}, {"exchange", assembly.exchange}}},
@@ -112,18 +139,18 @@ std::string explanation(const Problem& problem) {
       "          field points. A fringe point without a donor is an orphan.\n"
       "error     |interpolated - {}| at the fringe.\n"
       "iblank    0 hole, 1 field, -1 from the background, -2 from the overset mesh, 101 orphan\n",
-      problem.wall.n_triangles(), problem.options.fringe_layers, problem.options.least_quality,
+      sums_of(problem).n_triangles, problem.options.fringe_layers, problem.options.least_quality,
       problem.field);
 }
 
 void write(const Problem& problem, const Assembly& assembly, const std::string& folder) {
-  for (std::size_t i = 0; i < 2; ++i) {
+  for (std::size_t i = 0; i < problem.meshes.size(); ++i) {
     const Assembled& mesh = assembly.meshes[i];
     const std::array<tess::m2m::Field, 3> fields{
         {{"iblank", 1, {mesh.iblank.begin(), mesh.iblank.end()}},
          {"quality", 1, mesh.quality},
          {"value", 1, mesh.values}}};
-    write_exodus(fmt::format("{}/{}.exo", folder, names[i]), problem.meshes[i], fields);
+    write_exodus(fmt::format("{}/{}.exo", folder, mesh_name(i)), problem.meshes[i], fields);
   }
   kit::write_file(folder + "/before.svg", picture(problem, assembly, Moment::before));
   kit::write_file(folder + "/after.svg", picture(problem, assembly, Moment::after));

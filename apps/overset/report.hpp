@@ -18,7 +18,7 @@ namespace overset {
 /// The method in sentences, with the numbers of this run.
 [[nodiscard]] std::string explanation(const Problem& problem);
 
-/// Writes background.exo and overset.exo with the nodal variables iblank, quality and the field,
+/// Writes background.exo, overset.exo, overset2.exo, … with the nodal variables iblank, quality and the field,
 /// and before.svg and after.svg, into the folder.
 void write(const Problem& problem, const Assembly& assembly, const std::string& folder);
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 namespace tess::m2m {
 namespace {
@@ -38,8 +39,8 @@ BlankingReport JoinBlankingReports::operator()(BlankingReport a, const BlankingR
 
 void Blanking::cut(const MeshView& mesh, std::span<const Wall> walls,
                    std::span<const std::uint8_t> on_outer, BlankingOptions options) {
-  options_ = options;
-  roles_ = roles_of(mesh, walls, on_outer, options.fringe_layers);
+  roles_ = roles_of(mesh, walls, on_outer, options.fringe_layers, options.symmetry);
+  options_ = std::move(options);
   flags_.clear();
   for (const Role role : roles_) {
     flags_.push_back(role == Role::hole ? 1 : 0);

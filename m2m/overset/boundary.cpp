@@ -1,10 +1,12 @@
 #include "m2m/overset/boundary.hpp"
 
+#include "m2m/overset/rim.hpp"
 #include "m2m/rows/interpolate/orientation.hpp"
 #include "m2m/surface/sides.hpp"
 #include "runtime/core/error.hpp"
 
 #include <algorithm>
+#include <map>
 #include <numeric>
 #include <utility>
 
@@ -50,18 +52,25 @@ class Connected {
   std::vector<std::size_t> parent_;
 };
 
-/// Per face: whether its connected part encloses a cavity, that is a negative volume.
-std::vector<bool> are_inner(const TetMesh& mesh, const std::vector<Face>& faces) {
+/// Per face: whether its connected part encloses a cavity, that is a negative volume. A part that is
+/// open to planes of symmetry is closed beyond them.
+std::vector<bool> are_inner(const TetMesh& mesh, const std::vector<Face>& faces,
+                            std::span<const SymmetryPlane> symmetry) {
   Connected parts(mesh.points.size());
   for (const Face& face : faces) {
     parts.join(face.corners[0], face.corners[1]);
     parts.join(face.corners[0], face.corners[2]);
   }
-  std::vector<double> volume(mesh.points.size());  // by root
-  for (const Face& face : faces) {
-    const std::size_t root = parts.root(face.corners[0]);
-    volume[root] += orientation(mesh.points[root], at(mesh, face.corners[0]),
-                                at(mesh, face.corners[1]), at(mesh, face.corners[2]));
+  std::map<std::size_t, std::vector<std::array<VertexId, 3>>> surfaces;  // by root
+  for (const Face& face : faces) surfaces[parts.root(face.corners[0])].push_back(face.corners);
+  std::map<std::size_t, double> volume;
+  std::vector<Point> points = mesh.points;
+  for (auto& [root, surface] : surfaces) {
+    if (!symmetry.empty()) close(points, surface, symmetry);
+    for (const auto& [a, b, c] : surface)
+      volume[root] +=
+          orientation(points[root], points[static_cast<std::size_t>(a)],
+                      points[static_cast<std::size_t>(b)], points[static_cast<std::size_t>(c)]);
   }
   std::vector<bool> inner;
   for (const Face& face : faces) inner.push_back(volume[parts.root(face.corners[0])] < 0);
@@ -92,8 +101,9 @@ std::vector<std::array<VertexId, 3>> keys_of(const TetMesh& mesh, const std::str
 
 }  // namespace
 
-OversetBoundary overset_boundary(const TetMesh& mesh, const std::string& wall) {
-  const std::vector<Face> faces = boundary_faces(mesh);
+OversetBoundary overset_boundary(const TetMesh& mesh, const std::string& wall,
+                                 std::span<const SymmetryPlane> symmetry) {
+  std::vector<Face> faces = boundary_faces(mesh);
   OversetBoundary out;
   out.on_outer.assign(mesh.points.size(), 0);
   const auto sort_in = [&](const Face& face, bool is_wall) {
@@ -103,13 +113,22 @@ OversetBoundary overset_boundary(const TetMesh& mesh, const std::string& wall) {
       for (const VertexId v : face.corners) out.on_outer[static_cast<std::size_t>(v)] = 1;
     }
   };
+  const auto is_in_plane = [&](const Face& face) {
+    return std::any_of(symmetry.begin(), symmetry.end(), [&](const SymmetryPlane& plane) {
+      return std::all_of(face.corners.begin(), face.corners.end(),
+                         [&](VertexId v) { return plane.holds(at(mesh, v)); });
+    });
+  };
   if (wall.empty()) {
-    const std::vector<bool> inner = are_inner(mesh, faces);
+    std::erase_if(faces, is_in_plane);
+    const std::vector<bool> inner = are_inner(mesh, faces, symmetry);
     for (std::size_t i = 0; i < faces.size(); ++i) sort_in(faces[i], inner[i]);
   } else {
     const auto keys = keys_of(mesh, wall);
     for (const Face& face : faces)
-      sort_in(face, std::binary_search(keys.begin(), keys.end(), face.key));
+      if (const bool is_wall = std::binary_search(keys.begin(), keys.end(), face.key);
+          is_wall || !is_in_plane(face))
+        sort_in(face, is_wall);
   }
   return out;
 }

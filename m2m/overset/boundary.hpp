@@ -2,7 +2,7 @@
 // boundary, which receives values from them. Boundary faces are those of one tetrahedron only.
 #pragma once
 
-#include "m2m/mesh.hpp"
+#include "m2m/overset/symmetry.hpp"
 
 #include <array>
 #include <cstdint>
@@ -20,8 +20,10 @@ struct OversetBoundary {
 
 /// The wall is the side set of the given name. Without a name it is every connected part of the
 /// boundary that encloses a cavity, as the inner sphere of a spherical shell does. The rest is
-/// outer boundary. Takes O(n log n) for n tetrahedra. Throws Error (bad_argument) if the mesh has
-/// no such side set.
-[[nodiscard]] OversetBoundary overset_boundary(const TetMesh& mesh, const std::string& wall = {});
+/// outer boundary. Faces in planes of symmetry are neither, unless the side set has them; a cavity
+/// may be open to them. Takes O(n log n) for n tetrahedra. Throws Error (bad_argument) if the mesh
+/// has no such side set.
+[[nodiscard]] OversetBoundary overset_boundary(const TetMesh& mesh, const std::string& wall = {},
+                                               std::span<const SymmetryPlane> symmetry = {});
 
 }  // namespace tess::m2m

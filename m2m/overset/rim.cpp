@@ -62,9 +62,12 @@ std::vector<std::vector<VertexId>> loops_of(const std::vector<Edge>& rim) {
   return loops;
 }
 
+Point at(std::span<const Point> points, VertexId v) {
+  return points[static_cast<std::size_t>(v)];
+}
+
 double area_of(std::span<const Point> points, const std::array<VertexId, 3>& t) {
-  const auto at = [&](std::size_t i) { return points[static_cast<std::size_t>(t[i])]; };
-  const Point a = at(0), b = at(1), c = at(2);
+  const Point a = at(points, t[0]), b = at(points, t[1]), c = at(points, t[2]);
   double squared = 0;
   for (std::size_t k = 0; k < 3; ++k) {
     const std::size_t u = (k + 1) % 3, v = (k + 2) % 3;
@@ -72,6 +75,55 @@ double area_of(std::span<const Point> points, const std::array<VertexId, 3>& t) 
     squared += n * n;
   }
   return 0.5 * std::sqrt(squared);
+}
+
+/// The planes in which edges of a loop lie.
+struct Sides {
+  std::vector<SymmetryPlane> planes;
+  VertexId leaves_at = -1;  // begins an edge in no plane
+};
+Sides sides_of(std::span<const Point> points, std::span<const VertexId> loop,
+               std::span<const SymmetryPlane> symmetry) {
+  Sides out;
+  std::vector<bool> is_used(symmetry.size());
+  for (std::size_t i = 0; i < loop.size(); ++i) {
+    const Point a = at(points, loop[i]), b = at(points, loop[(i + 1) % loop.size()]);
+    bool is_in_plane = false;
+    for (std::size_t k = 0; k < symmetry.size(); ++k) {
+      if (!symmetry[k].holds(a) || !symmetry[k].holds(b)) continue;
+      is_used[k] = is_in_plane = true;
+    }
+    if (!is_in_plane) out.leaves_at = loop[i];
+  }
+  for (std::size_t k = 0; k < symmetry.size(); ++k)
+    if (is_used[k]) out.planes.push_back(symmetry[k]);
+  return out;
+}
+
+/// A point `by` or more beyond all planes, from `start`. None if there is no direction that leads
+/// away from all of them.
+std::optional<Point> point_beyond(Point start, double by, std::span<const SymmetryPlane> planes) {
+  constexpr double least = 0.01;  // sine of the angle to a plane
+  constexpr int most_tries = 1000;
+  Point way{};
+  for (const SymmetryPlane& plane : planes) way = difference(way, plane.normal);
+  // Turns away from the plane that the way leads to most (a perceptron), until it leads to none.
+  for (int k = 0; k < most_tries; ++k) {
+    const auto slope = [&](const SymmetryPlane& plane) { return dot(plane.normal, way); };
+    const auto worst = std::max_element(
+        planes.begin(), planes.end(),
+        [&](const SymmetryPlane& a, const SymmetryPlane& b) { return slope(a) < slope(b); });
+    if (slope(*worst) > -least * collide::length(way)) {
+      way = difference(way, worst->normal);
+      continue;
+    }
+    double times = 0;
+    for (const SymmetryPlane& plane : planes)
+      times = std::max(times, (plane.height(start) + by) / -slope(plane));
+    for (std::size_t axis = 0; axis < 3; ++axis) start[axis] += times * way[axis];
+    return start;
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -85,31 +137,61 @@ std::optional<SameDirection> same_direction(std::span<const std::array<VertexId,
     }
   std::optional<SameDirection> found;
   for (const auto& [edge, sides] : edges) {
-    if (sides.size() != 2) return std::nullopt;
-    if (!found && sides[0].second == sides[1].second)
+    if (sides.size() > 2) return std::nullopt;
+    if (!found && sides.size() == 2 && sides[0].second == sides[1].second)
       found = {{sides[0].first, sides[1].first}, edge};
   }
   return found;
 }
 
-Rim close(std::vector<Point>& points, std::vector<std::array<VertexId, 3>>& triangles) {
-  const std::vector<Edge> edges = rim_edges(triangles);
-  const auto loops = loops_of(edges);
+Rim close(std::vector<Point>& points, std::vector<std::array<VertexId, 3>>& triangles,
+          std::span<const SymmetryPlane> symmetry) {
+  const auto loops = loops_of(rim_edges(triangles));
+  Rim rim;
   double wall = 0, caps = 0;
   for (const auto& t : triangles) wall += area_of(points, t);
   for (const auto& loop : loops) {
+    const Sides sides = sides_of(points, loop, symmetry);
+    const bool is_on_symmetry = !sides.planes.empty() && sides.leaves_at < 0;
+    if (!sides.planes.empty() && sides.leaves_at >= 0) rim.leaves_at = sides.leaves_at;
+    if (is_on_symmetry)
+      for (const VertexId v : loop)
+        project({&points[static_cast<std::size_t>(v)], 1}, sides.planes);
     Point centroid{};
     for (const VertexId v : loop)
       for (std::size_t k = 0; k < 3; ++k)
-        centroid[k] += points[static_cast<std::size_t>(v)][k] / static_cast<double>(loop.size());
+        centroid[k] += at(points, v)[k] / static_cast<double>(loop.size());
     const auto centre = static_cast<VertexId>(points.size());
+    if (is_on_symmetry) {
+      double width = 0;
+      for (const VertexId v : loop)
+        width = std::max(width, collide::length(difference(at(points, v), centroid)));
+      const auto apex = point_beyond(centroid, width, sides.planes);
+      if (!apex) rim.between = loop[0];
+      centroid = apex.value_or(centroid);
+      ++rim.n_on_symmetry;
+    } else {
+      ++rim.n_loops;
+      rim.n_edges += loop.size();
+    }
     points.push_back(centroid);
     for (std::size_t i = 0; i < loop.size(); ++i) {
       triangles.push_back({loop[i], loop[(i + 1) % loop.size()], centre});
-      caps += area_of(points, triangles.back());
+      if (!is_on_symmetry) caps += area_of(points, triangles.back());
     }
   }
-  return {edges.size(), loops.size(), caps > 0 ? caps / (wall + caps) : 0};
+  rim.cap_share = caps > 0 ? caps / (wall + caps) : 0;
+  return rim;
+}
+
+std::vector<std::size_t> rim_edges_in(std::span<const Point> points,
+                                      std::span<const std::array<VertexId, 3>> triangles,
+                                      std::span<const SymmetryPlane> planes) {
+  std::vector<std::size_t> n(planes.size());
+  for (const auto& [a, b] : rim_edges(triangles))
+    for (std::size_t k = 0; k < planes.size(); ++k)
+      if (planes[k].holds(at(points, a)) && planes[k].holds(at(points, b))) ++n[k];
+  return n;
 }
 
 }  // namespace tess::m2m

@@ -7,7 +7,8 @@
 namespace tess::m2m {
 
 std::vector<Role> roles_of(const MeshView& mesh, std::span<const Wall> walls,
-                           std::span<const std::uint8_t> on_outer, std::int32_t fringe_layers) {
+                           std::span<const std::uint8_t> on_outer, std::int32_t fringe_layers,
+                           std::span<const SymmetryPlane> symmetry) {
   const std::size_t n = mesh.points.size();
   TESS_CHECK(on_outer.empty() || on_outer.size() == n, "expected ", n,
              " flags of the outer boundary, got ", on_outer.size());
@@ -15,9 +16,11 @@ std::vector<Role> roles_of(const MeshView& mesh, std::span<const Wall> walls,
   constexpr std::int32_t far = -1;
   std::vector<std::int32_t> layer(n, far);  // edges to the nearest hole; 1 on the outer boundary
   for (std::size_t v = 0; v < n; ++v) {
-    const bool is_hole = std::any_of(walls.begin(), walls.end(), [&](const Wall& wall) {
-      return wall.locate(mesh.points[v]) != Containment::outside;
-    });
+    const Point& p = mesh.points[v];
+    const auto is_inside = [&](const Wall& w) { return w.locate(p) != Containment::outside; };
+    const auto is_outside = [&](const SymmetryPlane& plane) { return plane.is_beyond(p); };
+    const bool is_hole = std::any_of(symmetry.begin(), symmetry.end(), is_outside) ||
+                         std::any_of(walls.begin(), walls.end(), is_inside);
     if (is_hole) roles[v] = Role::hole;
     if (is_hole)
       layer[v] = 0;

@@ -39,9 +39,15 @@ std::vector<VertexId> firsts_of(std::span<const Point> points) {
   return first;
 }
 
+/// "(0, 0.5, 1)".
+std::string place_of(const Point& p) {
+  return text('(', p[0], ", ", p[1], ", ", p[2], ')');
+}
+
 }  // namespace
 
-Wall::Wall(std::span<const Point> points, std::span<const std::array<VertexId, 3>> triangles)
+Wall::Wall(std::span<const Point> points, std::span<const std::array<VertexId, 3>> triangles,
+           std::span<const SymmetryPlane> symmetry)
     : scale_(scale_of(points)) {
   std::vector<Point> at;
   for (const Point& p : points) at.push_back(scaled(p));
@@ -64,21 +70,33 @@ Wall::Wall(std::span<const Point> points, std::span<const std::array<VertexId, 3
   }
   if (whole.empty())
     fail(ErrorCode::bad_mesh, "the wall has no triangle with an area; give the surface of a body");
-  rim_ = close(at, whole);
-  if (rim_.cap_share > most_capped) {
+  std::vector<SymmetryPlane> planes(symmetry.begin(), symmetry.end());
+  for (SymmetryPlane& plane : planes) plane.offset *= scale_, plane.tolerance *= scale_;
+  rim_ = close(at, whole, planes);
+  if (rim_.cap_share > most_capped || rim_.leaves_at >= 0) {
     if (const auto turned = same_direction(std::span(whole).first(numbers.size()))) {
       const auto& [one, other] = turned->triangles;
       const Point &p = points[static_cast<std::size_t>(turned->edge.first)],
                   &q = points[static_cast<std::size_t>(turned->edge.second)];
       fail(ErrorCode::bad_mesh, "the triangles of the wall are not oriented alike: triangles ",
-           numbers[one], " and ", numbers[other], " (from 0) pass their edge between (", p[0], ", ",
-           p[1], ", ", p[2], ") and (", q[0], ", ", q[1], ", ", q[2],
-           ") in the same direction; turn triangles until all normals point outwards");
+           numbers[one], " and ", numbers[other], " (from 0) pass their edge between ", place_of(p),
+           " and ", place_of(q),
+           " in the same direction; turn triangles until all normals point outwards");
     }
+    if (rim_.leaves_at >= 0)
+      fail(ErrorCode::bad_mesh, "a hole of the wall lies in a plane of symmetry in part only: at ",
+           place_of(points[static_cast<std::size_t>(rim_.leaves_at)]), " it leaves ",
+           text_of(symmetry), "; give all planes of symmetry, or move its points onto them");
     fail(ErrorCode::bad_mesh, "the wall is open: caps on its ", rim_.n_loops, " holes with ",
          rim_.n_edges, " edges are ", rim_.cap_share, " of the area, at most ", most_capped,
-         " is allowed; close the holes, or merge points that should be one");
+         " is allowed; close the holes, merge points that should be one, or give the planes of "
+         "symmetry that they lie in");
   }
+  if (rim_.between >= 0)
+    fail(ErrorCode::bad_mesh, "the hole of the wall at ",
+         place_of(points[static_cast<std::size_t>(rim_.between)]),
+         " lies in planes of symmetry that face each other, among ", text_of(symmetry),
+         "; close the wall in one of them");
   for (const auto& corners : whole) {
     WallTriangle triangle{{}, corners};
     for (std::size_t i = 0; i < 3; ++i)

@@ -145,10 +145,21 @@ refuses "kuhn:3 has no cavity" "${overset[@]}" kuhn:4 kuhn:3
 refuses "ball:1: give a number" "${overset[@]}" kuhn:4 ball:1
 refuses "no side set body; it has none (ExodusII and gmsh" "${overset[@]}" kuhn:4 ball:4 --wall body
 refuses "missing.obj" "${overset[@]}" kuhn:4 kuhn:4 --wall "$scratch/missing.obj"
-printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >"$scratch/sheet.obj"
+printf 'v .1 .1 .1\nv .9 .1 .1\nv .1 .9 .1\nf 1 2 3\n' >"$scratch/sheet.obj"
 refuses "the wall is open" "${overset[@]}" kuhn:4 kuhn:4 --wall "$scratch/sheet.obj"
 printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\nf 2 3 4\nf 1 4 3\n' >"$scratch/turned.obj"
 refuses "not oriented alike: triangles 0 and 1 .*between (0, 0, 0) and (1, 0, 0)" "${overset[@]}" kuhn:4 kuhn:4 --wall "$scratch/turned.obj"
+printf 'v .4 .4 0\nv .6 .4 0\nv .5 .6 0\nv .5 .5 .2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n' >"$scratch/tent.obj"
+refuses "rim lies in z=0, which is a boundary of the background: give --symmetry z=0" "${overset[@]}" kuhn:4 kuhn:4 --wall "$scratch/tent.obj"
+sed 's/f 2 3 4/f 3 2 4/' "$scratch/tent.obj" >"$scratch/turned_tent.obj"
+refuses "not oriented alike" "${overset[@]}" kuhn:4 kuhn:4 --wall "$scratch/turned_tent.obj" --symmetry z=0
+refuses "symmetry y=0: no wall has a rim in it" "${overset[@]}" kuhn:4 ball:4@.5:.5:.5 --symmetry y=0
+refuses "z=0.5 is no plane of symmetry: the domain reaches 0.5 to one" "${overset[@]}" kuhn:4 ball:4 --symmetry z=0.5
+refuses "z=-1 is no plane of symmetry: the domain ends 1 from it" "${overset[@]}" kuhn:4 ball:4 --symmetry z=-1
+refuses "symmetry z=0 is given twice" "${overset[@]}" kuhn:4 ball:4 --symmetry z=0,z=0
+refuses "symmetry w=0 is no plane" "${overset[@]}" kuhn:4 ball:4 --symmetry w=0
+refuses "crosses the plane of symmetry across z; give an even" "${overset[@]}" kuhn:4 ball:5 --symmetry z=0
+refuses "ball:4@.5:.5: after @ give a centre" "${overset[@]}" kuhn:4 ball:4@.5:.5
 refuses "least-quality" "${overset[@]}" --least-quality 2
 refuses "layers" "${overset[@]}" --layers 0
 refuses "kuhn:4 cannot be refined" "${overset[@]}" kuhn:4 kuhn:4 --study h

@@ -99,6 +99,12 @@ want=$(hash_of)
 same "${overset[@]}" --pes 2 --chares 7
 same "${mpirun[@]}" -n 2 "${overset[@]}" --chares 3
 same "${overset[@]}" --sim pes=5,cost=100ns,seed=3 --chares 6
+half=("$bin/overset" kuhn:16 ball:8 --symmetry z=0)
+answers 'wall: [0-9]+ triangles, closed beyond z=0' "${half[@]}" --pes 1 --chares 1
+want=$(hash_of)
+same "${half[@]}" --pes 2 --chares 7
+same "${mpirun[@]}" -n 2 "${half[@]}" --chares 3
+answers '^overset2 ' "$bin/overset" kuhn:12 ball:4@.3:.5:0:.12 box:4@.7:.5:.1:.12 --symmetry z=0 --pes 2
 answers 'orphan: background point [0-9]+ at .*: outside' "$bin/overset" kuhn:10 ball:6 --layers 2 --pes 1 \
   --plot "$scratch/overset" --json "$scratch/overset.json"
 python3 - "$scratch" <<'END'

@@ -25,6 +25,9 @@ mesh shaft_binary "$here/meshes/shaft.geo" -setnumber h 0.25 -bin
 mesh shaft_22 "$here/meshes/shaft.geo" -setnumber h 0.25 -format msh22
 mesh shaft_22_binary "$here/meshes/shaft.geo" -setnumber h 0.25 -format msh22 -bin
 mesh shaft_quadratic "$here/meshes/shaft.geo" -setnumber h 0.4 -order 2
+for part in 1 2; do
+  mesh "half_sphere_$part" "$here/../../apps/overset/half_sphere.geo" -setnumber part "$part"
+done
 mesh hexes "$here/meshes/hexes.geo"
 gmsh -v 1 -setstring file "$(realpath "$folder")/view.part.msh" - "$here/meshes/view.geo"
 mv "$folder/view.part.msh" "$folder/view.msh"
