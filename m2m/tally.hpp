@@ -10,7 +10,9 @@ namespace tess::m2m {
 
 struct Tally {
   std::array<std::uint64_t, 4> counts{};  ///< target points per Status
-  std::uint64_t n_candidates = 0;         ///< pairs (tetrahedron, point in its box) tested
+  /// Pairs (tetrahedron, point in its box) tested; of conservative kinds, pairs of tetrahedra that
+  /// are cut, since no face clearly separates them.
+  std::uint64_t n_candidates = 0;
   /// Source pieces that had not moved since the last search and kept what it had made of them.
   std::uint64_t n_kept_sources = 0;
   /// Counts, for conservative kinds, points or cells that the source covers more than once, since

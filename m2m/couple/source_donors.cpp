@@ -9,6 +9,7 @@
 #include "runtime/core/sort_unique.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 namespace tess::m2m {
@@ -105,13 +106,26 @@ void SourceSide::prepare(const MeshView& mesh) {
     cover_ = {};
     nearest_.reset();
   }
-  if (!needs_gradients(setup.kind) || !gradient_vertices_.empty()) return;
+  if (!needs_gradients(setup.kind) || has_fits_) return;
+  has_fits_ = true;
+  std::vector<VertexId> wanted, missing;
   for (const auto& [target, given] : given_)
     for (const Donor& donor : given.donors)
-      gradient_vertices_.insert(gradient_vertices_.end(), donor.vertices.begin(),
-                                donor.vertices.end());
-  sort_unique(gradient_vertices_);
-  gradient_rows_ = gradient_rows(mesh, mesh.point_ids, gradient_vertices_);
+      wanted.insert(wanted.end(), donor.vertices.begin(), donor.vertices.end());
+  sort_unique(wanted);
+  std::set_difference(wanted.begin(), wanted.end(), gradient_vertices_.begin(),
+                      gradient_vertices_.end(), std::back_inserter(missing));
+  const Rows<Point> fitted = gradient_rows(mesh, mesh.point_ids, missing);
+  Rows<Point> rows;
+  std::size_t next_kept = 0, next_fitted = 0;
+  for (const VertexId v : wanted) {
+    while (next_kept < gradient_vertices_.size() && gradient_vertices_[next_kept] < v) ++next_kept;
+    const bool is_new = next_fitted < missing.size() && missing[next_fitted] == v;
+    const Rows<Point>& from = is_new ? fitted : gradient_rows_;
+    rows.add_row(from, is_new ? next_fitted++ : next_kept);
+  }
+  gradient_vertices_ = std::move(wanted);
+  gradient_rows_ = std::move(rows);
 }
 
 std::vector<Point> SourceSide::gradients(std::span<const double> values,
@@ -164,12 +178,10 @@ Rows<double> SourceSide::weights_of(const MeshView& mesh, std::span<const Donor>
   std::size_t next = 0;
   for (std::size_t v = 0; v < mesh.points.size(); ++v) {
     if (next < gradient_vertices_.size() && gradient_vertices_[next] == static_cast<VertexId>(v)) {
-      const auto columns = gradient_rows_.columns_of(next);
-      const auto weights = gradient_rows_.weights_of(next);
-      for (std::size_t k = 0; k < columns.size(); ++k) gradients.add(columns[k], weights[k]);
-      ++next;
+      gradients.add_row(gradient_rows_, next++);
+    } else {
+      gradients.end_row();
     }
-    gradients.end_row();
   }
   return second_order_rows({mesh.points, tets}, points, gradients);
 }

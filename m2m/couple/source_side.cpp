@@ -12,11 +12,13 @@ std::vector<Aabb> SourceSide::start_search(const MeshView& mesh) {
   given_.clear();
   attached_.clear();
   rounds_.clear();
-  gradient_vertices_.clear();
+  has_fits_ = false;
   n_rows_ = n_unknowns(mesh, setup.source_values);
   stays_ = same_.ask(mesh);
   if (stays_ == SameMesh::Answer::same) return cover_.boxes;
   nearest_.reset();
+  gradient_vertices_.clear();
+  gradient_rows_ = {};
   cover_ = {};
   if (setup.collides()) cover_ = cover_tets(mesh.points, mesh.own_tets(), setup.tolerance);
   return cover_.boxes;

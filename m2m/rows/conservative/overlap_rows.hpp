@@ -44,7 +44,7 @@ struct OverlapRows {
       tets;  ///< positions in TargetTets::tets of those that overlap, ascending
   std::vector<std::array<double, 4>>
       covered;                 ///< per entry of tets and corner: loads of the constant 1
-  std::uint64_t n_tested = 0;  ///< pairs of tetrahedra whose boxes overlap
+  std::uint64_t n_tested = 0;  ///< pairs of tetrahedra that no face clearly separates
 };
 
 /// The number of unknowns of a part of a mesh, and their ids.

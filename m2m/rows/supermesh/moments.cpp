@@ -1,10 +1,10 @@
 #include "m2m/rows/supermesh/moments.hpp"
 
 #include "m2m/rows/interpolate/orientation.hpp"
+#include "m2m/rows/supermesh/polyhedron.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 namespace tess::m2m {
 namespace {
@@ -12,12 +12,8 @@ namespace {
 /// If six times the volume of the cutting tetrahedron exceeds this multiple of the box around both,
 /// the rounding errors of its weights are below 1e-10 (as in locate.cpp).
 constexpr double flat_limit = 4 * 6 * orientation_bound * 1e10;
-
-/// Heights of the corners of one tetrahedron above the faces of another one, which cuts.
-struct Heights {
-  std::array<Weights, 4> above;
-  bool apart = false;  ///< a face separates the tetrahedra: no volume in common
-};
+/// The same for heights(), as a multiple of their sure_height(): errors of weights are below 1e-14.
+constexpr double flat_height = 0x1p37;
 
 /// Heights above such a tetrahedron may be mostly rounding; only their signs are exact.
 bool is_flat(const Corners& carried, const Corners& cutting, double sixfold) {
@@ -34,131 +30,109 @@ bool is_flat(const Corners& carried, const Corners& cutting, double sixfold) {
   return !(std::abs(sixfold) > flat_limit * product);
 }
 
-/// `sixfold`: six times the volume of `cutting`, with its sign. A height is six times the volume of
-/// the tetrahedron over the face, so four heights of a point add up to |sixfold|.
-Heights heights_above(const Corners& carried, const Corners& cutting, double sixfold) {
-  Heights result{};
+/// Heights with exact signs.
+Heights exact_heights(const TetPlanes& cutting, const TetPlanes& carried) {
+  const Corners c = cutting.corners(), of = carried.corners();
+  Heights result;
   const auto compute = [&](auto&& orient) {
-    for (std::size_t f = 0; f < 4; ++f) {
-      bool any = false;
+    for (std::size_t f = 0; f < 4; ++f)
       for (std::size_t v = 0; v < 4; ++v) {
-        const double volume = orient(carried[v], cutting[faces_of_tet[f][0]],
-                                     cutting[faces_of_tet[f][1]], cutting[faces_of_tet[f][2]]);
-        const double height = sixfold > 0 ? volume : -volume;
-        result.above[v][f] = height;
-        any = any || height > 0;
+        const double height =
+            orient(of[v], c[faces_of_tet[f][0]], c[faces_of_tet[f][1]], c[faces_of_tet[f][2]]);
+        result[f][v] = cutting.sixfold > 0 ? height : -height;
       }
-      result.apart = !any;
-      if (result.apart) return;
-    }
   };
   compute(orientation);
-  if (!result.apart && is_flat(carried, cutting, sixfold)) compute(orientation_exact);
+  if (is_flat(of, c, cutting.sixfold)) compute(orientation_exact);
   return result;
 }
 
-double sixfold_volume(const Corners& c) {
-  return orientation(c[0], c[1], c[2], c[3]);
-}
-
-/// Two tetrahedra with the carried one chosen.
-struct Pair {
-  const Corners& carried;
-  const Corners& cutting;
-  double carried_volume;   // absolute
-  double cutting_sixfold;  // with sign
-  bool target_carried;
-};
-std::optional<Pair> pair_of(const Corners& source, const Corners& target) {
-  const double s = sixfold_volume(source), t = sixfold_volume(target);
-  if (s == 0 || t == 0) return std::nullopt;
-  if (std::abs(t) <= std::abs(s)) return Pair{target, source, std::abs(t) / 6, s, true};
-  return Pair{source, target, std::abs(s) / 6, t, false};
-}
-
-/// The volume of K, and integrals over it of a weight of the carried tetrahedron times one of the
-/// cutting tetrahedron, as fractions of the carried volume.
-struct CarriedMoments {
-  double volume = 0;
-  Matrix4 mixed{};  // [carried][cutting]
-};
-
-/// The weights of the cutting tetrahedron at a vertex of K. There no height is negative but by
-/// rounding, so they add up without cancellation. (At corners of the carried tetrahedron, far
-/// outside of a flat cutting one, they do not.)
-Weights cutting_weights(const Polyhedron::Vertex& vertex) {
-  Weights w;
-  for (std::size_t k = 0; k < 4; ++k) w[k] = std::max(vertex.heights[k], 0.0);
-  const double total = (w[0] + w[1]) + (w[2] + w[3]);
-  for (double& x : w) x = total > 0 ? x / total : 0.25;
-  return w;
-}
-
-/// The integral of r_a s_c over a tetrahedron with linear r and s is
-/// V / 20 (sum over corners of r_a s_c + (sum of r_a) (sum of s_c)).
-CarriedMoments moments_of(const Polyhedron& polyhedron) {
-  CarriedMoments result;
-  polyhedron.for_each_piece([&](double fraction, const auto&... corner) {
-    result.volume += fraction;
-    const std::array<Weights, 4> r{corner.weights...}, s{cutting_weights(corner)...};
-    Weights all_r, all_s;
-    for (std::size_t k = 0; k < 4; ++k) {
-      all_r[k] = (r[0][k] + r[1][k]) + (r[2][k] + r[3][k]);
-      all_s[k] = (s[0][k] + s[1][k]) + (s[2][k] + s[3][k]);
-    }
-    const double scale = fraction / 20;
-    for (std::size_t a = 0; a < 4; ++a) {
-      for (std::size_t c = 0; c < 4; ++c) {
-        result.mixed[a][c] +=
-            scale *
-            (((r[0][a] * s[0][c] + r[1][a] * s[1][c]) + (r[2][a] * s[2][c] + r[3][a] * s[3][c])) +
-             all_r[a] * all_s[c]);
-      }
-    }
-  });
-  return result;
-}
-
-Matrix4 transposed(const Matrix4& a) {
-  Matrix4 out;
-  for (std::size_t i = 0; i < 4; ++i)
-    for (std::size_t j = 0; j < 4; ++j) out[i][j] = a[j][i];
-  return out;
-}
-void scale(Matrix4& a, double factor) {
-  for (Weights& row : a)
-    for (double& x : row) x *= factor;
+bool are_sure(const Heights& h, double sure) {
+  const Four least = simd::min(simd::min(simd::abs(h[0]), simd::abs(h[1])),
+                               simd::min(simd::abs(h[2]), simd::abs(h[3])));
+  return !simd::any(least <= sure);
 }
 
 }  // namespace
 
-double overlap_volume(const Corners& a, const Corners& b) {
-  const auto pair = pair_of(a, b);
-  if (!pair) return 0;
-  const Heights heights = heights_above(pair->carried, pair->cutting, pair->cutting_sixfold);
-  if (heights.apart) return 0;
-  Polyhedron polyhedron(heights.above);
-  if (!polyhedron.cut()) return 0;
-  double fraction = 0;
-  polyhedron.for_each_piece([&](double piece, const auto&...) { fraction += piece; });
-  return fraction * pair->carried_volume;
+TetPlanes::TetPlanes(const Corners& c) : sixfold(orientation(c[0], c[1], c[2], c[3])) {
+  const std::array<Point, 3> e{difference(c[1], c[0]), difference(c[2], c[0]),
+                               difference(c[3], c[0])};
+  const std::array<Point, 3> n{cross(e[1], e[2]), cross(e[2], e[0]), cross(e[0], e[1])};
+  const double sign = sixfold < 0 ? -1 : 1;
+  for (std::size_t k = 0; k < 3; ++k) {
+    at[k] = Four{c[0][k], c[1][k], c[2][k], c[3][k]};
+    for (const Point& edge : e) reach = std::max(reach, std::abs(edge[k]));
+    normal[k] = sign * Four{-(n[0][k] + n[1][k] + n[2][k]), n[0][k], n[1][k], n[2][k]};
+  }
+  base[0] = std::abs(sixfold);
+}
+
+/// False: the heights of corners are mostly rounding beside the volume of a flat tetrahedron.
+bool PairCutter::is_plain(const Pair& pair) {
+  return std::abs(pair.cutting->sixfold) > flat_height * sure_height(*pair.cutting, *pair.carried);
+}
+
+template <std::size_t face>
+void PairCutter::cut_by() {
+  std::size_t n = 0;
+  for (const std::uint32_t k : left_) {
+    left_[n] = k;
+    n += overlaps_[k].cut<face>() ? 1U : 0U;
+  }
+  left_.resize(n);
+}
+
+void PairCutter::cut_all() {
+  overlaps_.clear();
+  left_.clear();
+  for (std::uint32_t k = 0; k < n_; ++k) {
+    const Pair& pair = pairs_[k];
+    const bool sure =
+        is_plain(pair) && are_sure(pair.heights, sure_height(*pair.cutting, *pair.carried));
+    overlaps_.emplace_back(sure ? pair.heights : exact_heights(*pair.cutting, *pair.carried));
+    if (pair.carried->sixfold != 0 && pair.cutting->sixfold != 0) left_.push_back(k);
+  }
+  cut_by<0>();
+  cut_by<1>();
+  cut_by<2>();
+  cut_by<3>();
+}
+
+PairMoments PairCutter::moments_of(std::uint32_t k) {
+  const Pair& pair = pairs_[k];
+  const bool plain = is_plain(pair);
+  if (!plain) overlaps_[k].heights_to_weights();
+  const Polyhedron::Integrals integrals = overlaps_[k].integrals();
+  const double volume = std::abs(pair.carried->sixfold) / 6;
+  const double unit = volume / 20 / (plain ? std::abs(pair.cutting->sixfold) : 1);
+  PairMoments result;
+  result.volume = integrals.volume * volume;
+  std::array<Four, 4> rows;  // without branches: which one is carried is not predictable
+  for (std::size_t s = 0; s < 4; ++s)
+    for (std::size_t t = 0; t < 4; ++t) {
+      const std::size_t at = pair.carries_target ? 4 * t + s : 4 * s + t;
+      rows[s][t] = integrals.mixed[at / 8][at % 8];
+    }
+  for (std::size_t s = 0; s < 4; ++s)
+    simd::store(result.mixed[s].data(), simd::max(rows[s] * unit, Four{}));
+  return result;
 }
 
 PairMoments pair_moments(const Corners& source, const Corners& target) {
   PairMoments result;
-  const auto pair = pair_of(source, target);
-  if (!pair) return result;
-  const Heights heights = heights_above(pair->carried, pair->cutting, pair->cutting_sixfold);
-  if (heights.apart) return result;
-  Polyhedron polyhedron(heights.above);
-  if (!polyhedron.cut()) return result;
-  CarriedMoments moments = moments_of(polyhedron);
-  if (!(moments.volume > 0)) return result;
-  result.volume = moments.volume * pair->carried_volume;
-  Matrix4& mixed = moments.mixed;
-  scale(mixed, pair->carried_volume);
-  result.mixed = pair->target_carried ? transposed(mixed) : mixed;
+  if (!collide::overlap(collide::box_around(source), collide::box_around(target),
+                        collide::Touching::does_not_count))
+    return result;
+  const TetPlanes s(source), t(target);
+  PairCutter cutter;
+  cutter.add(s, t, 0);
+  cutter.cut([&](std::int32_t /*number*/, const PairMoments& moments) { result = moments; });
   return result;
+}
+
+double overlap_volume(const Corners& a, const Corners& b) {
+  return pair_moments(a, b).volume;
 }
 
 }  // namespace tess::m2m

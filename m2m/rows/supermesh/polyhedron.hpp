@@ -1,20 +1,21 @@
 // The part of a tetrahedron that lies in another one: a convex polyhedron, cut by one half-space
-// after the other. It is a graph in which every vertex has three neighbours, in counter-clockwise
-// order seen from outside. A cut removes vertices, and closes the open edges in a ring:
+// after the other. Each vertex is where three planes meet, each edge where two do, of the four faces
+// of the carried tetrahedron and the four of the cutting one. So a list of vertices per plane, as
+// bits, is the whole graph: the ends of an edge are the vertices that two planes share.
 //
-//        /|\                 Vertices below the plane go. Each edge that crosses the plane gets a
-//     --+-+-+-- plane        new vertex; the new vertices are linked by a walk around the faces.
+//        /|\                 Vertices that are not above the plane go. Each edge that crosses the
+//     --+-+-+-- plane        plane gets a new vertex on its two planes and on this one.
 //      /  |  \               A degenerate case (a vertex, an edge or a face in the plane) only gives
 //                            vertices that coincide, and pieces without volume.
 //
-// (Powell and Abel 2015, "An exact general remeshing scheme applied to physically conservative
-// voxelization", section 3.) Unlike there, vertices have barycentric coordinates, those of the
-// carried tetrahedron, and heights above the four faces of the cutting one. So no result depends on
-// the place or the unit of the coordinates, and all corners have coordinates without an error.
+// (The cuts are those of Powell and Abel 2015, "An exact general remeshing scheme applied to
+// physically conservative voxelization", section 3, without the walks around faces.) Vertices have
+// barycentric coordinates, those of the carried tetrahedron, and heights above the four faces of the
+// cutting one. So no result depends on the place or the unit of the coordinates, and all corners
+// have coordinates without an error.
 #pragma once
 
-#include "m2m/mesh.hpp"
-#include "m2m/rows/interpolate/locate.hpp"
+#include "m2m/rows/supermesh/tet_planes.hpp"
 
 #include <array>
 #include <cstddef>
@@ -22,76 +23,39 @@
 
 namespace tess::m2m {
 
-using Corners = std::array<Point, 4>;
-
 class Polyhedron {
  public:
-  struct Vertex {
-    Weights weights;  ///< barycentric coordinates in the carried tetrahedron
-    Weights heights;  ///< above the faces of the cutting tetrahedron; their sum is constant
-    std::array<std::uint8_t, 3> next;
-  };
+  /// Four weights in the carried tetrahedron, then four heights above the faces of the cutting one.
+  using Vertex = simd::Vector<double, 8>;
 
-  /// The whole carried tetrahedron. `heights[v]`: of its corner v above the four faces.
-  explicit Polyhedron(const std::array<Weights, 4>& heights);
+  /// The whole carried tetrahedron; the heights are those of its corners.
+  explicit Polyhedron(const Heights& heights);
 
-  /// Removes what lies below the faces. Returns false if no volume is left.
+  /// Removes what does not lie above a face. Returns false if nothing is left.
+  template <std::size_t face>
   [[nodiscard]] bool cut();
 
-  /// Calls visit(fraction, a, b, c, d) for tetrahedra that make up the polyhedron. `fraction`: the
-  /// volume of the piece as a fraction of the carried tetrahedron; pieces that have none, up to
-  /// rounding, are left out. a to d: its corners, of type Vertex.
-  template <class Visit>
-  void for_each_piece(Visit&& visit) const;
+  /// Replaces heights by weights in the cutting tetrahedron. No height is negative but by rounding,
+  /// so the four add up without cancellation. (At corners of the carried tetrahedron, far outside
+  /// of a flat cutting one, they do not.)
+  void heights_to_weights();
+
+  struct Integrals {
+    double volume = 0;              ///< as a fraction of the carried tetrahedron
+    std::array<Vertex, 2> mixed{};  ///< 20 times those of weight a times height c, at 4 a + c
+  };
+  [[nodiscard]] Integrals integrals() const;
 
  private:
-  [[nodiscard]] bool cut(std::size_t face);
+  /// Bits of vertices, per plane.
+  using Planes = simd::Vector<std::uint32_t, 8>;
 
-  static constexpr std::size_t capacity = 32;  // at most 12 are left after a cut
+  static constexpr std::size_t capacity = 32;  // at most 4 + 4 + 5 + 6 + 7 vertices are ever made
   std::array<Vertex, capacity> vertices_;
-  std::size_t n_ = 4;
+  std::uint32_t n_ = 4;
+  std::uint32_t left_ = 0xF;                // those that no cut has removed
+  Planes on_;                               // of those left: carried faces, then cutting ones
+  simd::Vector<std::uint32_t, 4> above_{};  // per cutting face
 };
-
-template <class Visit>
-void Polyhedron::for_each_piece(Visit&& visit) const {
-  const Weights& apex = vertices_[0].weights;
-  // Three of the four coordinates are enough for volumes.
-  const auto edge = [&](std::size_t v) {
-    const Weights& w = vertices_[v].weights;
-    return Point{w[1] - apex[1], w[2] - apex[2], w[3] - apex[3]};
-  };
-  std::array<std::array<bool, 3>, capacity> seen{};
-  for (std::size_t first = 0; first < n_; ++first) {
-    for (std::size_t start = 0; start < 3; ++start) {
-      if (seen[first][start]) continue;
-      // Walks around the face on the left of this edge, as a fan of triangles from `first`.
-      std::size_t previous = first, side = start, at = vertices_[first].next[start];
-      seen[first][start] = true;
-      bool holds_apex = first == 0 || at == 0;
-      std::array<std::size_t, capacity> ring{first, at};
-      std::size_t n_ring = 2;
-      for (;;) {
-        side = 0;
-        while (vertices_[at].next[side] != previous) ++side;
-        side = (side + 1) % 3;
-        seen[at][side] = true;
-        previous = at;
-        at = vertices_[at].next[side];
-        if (at == first) break;
-        holds_apex = holds_apex || at == 0;
-        ring[n_ring++] = at;
-      }
-      if (holds_apex) continue;  // no volume between the apex and this face
-      const Point a = edge(first);
-      for (std::size_t k = 1; k + 1 < n_ring; ++k) {
-        const Point b = edge(ring[k]), c = edge(ring[k + 1]);
-        const double fraction = dot(a, cross(b, c));
-        if (fraction > 0)
-          visit(fraction, vertices_[0], vertices_[first], vertices_[ring[k]],
-                vertices_[ring[k + 1]]);
-      }
-    }
-  }
-}
 
 }  // namespace tess::m2m

@@ -34,6 +34,14 @@ struct Rows {
     weights.push_back(weight);
   }
   void end_row() { begin.push_back(columns.size()); }
+  /// Appends a row of others.
+  void add_row(const Rows& from, std::size_t row) {
+    const auto new_columns = from.columns_of(row);
+    const auto new_weights = from.weights_of(row);
+    columns.insert(columns.end(), new_columns.begin(), new_columns.end());
+    weights.insert(weights.end(), new_weights.begin(), new_weights.end());
+    end_row();
+  }
 
   template <class Archive>
   void serialize(Archive& ar) {

@@ -108,7 +108,10 @@ Task search_again(std::uint64_t seed, Searches& found) {
     source = create_pieces<MovedPatch>(kuhn_mesh({4}), n_parts);
     target = create_pieces<MovedPatch>(kuhn_mesh({3}), 2);
   });
-  const CouplingOptions options{.policy = Nearest{}, .tolerance = random.chance(0.5) ? 0 : 0.1};
+  const CouplingOptions options{
+      .policy = Nearest{},
+      .kind = seed % 2 == 0 ? TransferKind::linear : TransferKind::second_order,  // with kept fits
+      .tolerance = random.chance(0.5) ? 0 : 0.1};
   Coupling kept(source, target, options);
   int n_since_change = 0;
   for (int k = 0; k < 8; ++k) {

@@ -1,6 +1,7 @@
 #include "m2m/rows/supermesh/moments.hpp"
 
 #include "m2m/kuhn.hpp"
+#include "m2m/rigid_motion.hpp"
 #include "m2m/rows/interpolate/orientation.hpp"
 #include "tests/m2m/overlapping.hpp"
 #include "tests/support/catch.hpp"
@@ -131,11 +132,13 @@ TEST_CASE("overlaps with the parts of a partition of space add up to 1e-13", "[m
 
 TEST_CASE("two meshes of a cube overlap in its volume, and slivers lose nothing",
           "[m2m][supermesh]") {
-  // Layers of aspect up to 1e6: the second mesh is squeezed towards z = 0.
-  for (const double power : {1.0, 4.0, 8.0}) {
-    const TetMesh a = kuhn_mesh({4, 0.2});
-    TetMesh b = kuhn_mesh({6, 0.1});
-    for (Point& p : b.points) p[2] = std::pow(p[2], power);
+  // Layers of aspect up to 1e6: the second mesh is squeezed towards z = 0. Half of the cubes are
+  // turned, so that faces in one plane are so up to rounding.
+  for (const double power : {1.0, 4.0, 8.0, -1.0, -4.0}) {
+    TetMesh a = kuhn_mesh({4, 0.2}), b = kuhn_mesh({6, 0.1});
+    for (Point& p : b.points) p[2] = std::pow(p[2], std::abs(power));
+    if (power < 0)
+      for (TetMesh* mesh : {&a, &b}) move_points(mesh->points, {.axis = {1, 2, 3}, .angle = 0.7});
     double sum = 0;
     for (const TetPair& pair : overlapping_pairs(view(a), view(b)))
       sum += overlap_volume(corners_of(a.points, a.tets[static_cast<std::size_t>(pair.source)]),
@@ -143,6 +146,48 @@ TEST_CASE("two meshes of a cube overlap in its volume, and slivers lose nothing"
     CAPTURE(power);
     CHECK(std::abs(sum - 1) < 1e-13);
   }
+}
+
+TEST_CASE("a face separates only what has no volume in common, and heights are as exact as stated",
+          "[m2m][supermesh]") {
+  // Every second pair touches in the plane of a face, up to rounding.
+  RandomTets random(6);
+  std::size_t n_apart = 0;
+  for (int i = 0; i < 4000; ++i) {
+    const double flatness = std::pow(10.0, -(i % 7));
+    Corners a = random.next(flatness), b = moved(random.next(flatness), 1, {0, 0.4 * (i % 3), 0});
+    if (i % 2 == 0)
+      b = moved(a, i % 4 == 0 ? -1 : -0.3, {}), b = moved(b, 1, difference(a[1], b[1]));
+    for (Corners* c : {&a, &b}) *c = moved(*c, 1, {i % 5 == 0 ? 1e4 / 3 : 0, 0, 0});
+    if (i % 3 == 0) std::swap(a[0], a[1]);
+    const TetPlanes s(a), t(b);
+    bool none_above = false;
+    for (const auto& [of, by] : {std::pair(&t, &s), std::pair(&s, &t)}) {
+      const Corners p = of->corners(), c = by->corners();
+      for (std::size_t f = 0; f < 4; ++f) {
+        bool any = false;
+        for (std::size_t v = 0; v < 4; ++v) {
+          const double volume = orientation_exact(p[v], c[faces_of_tet[f][0]],
+                                                  c[faces_of_tet[f][1]], c[faces_of_tet[f][2]]);
+          const double exact = by->sixfold < 0 ? -volume : volume;
+          any = any || exact > 0;
+          const bool overlap =
+              tess::collide::overlap(tess::collide::box_around(a), tess::collide::box_around(b),
+                                     tess::collide::Touching::counts);
+          if (overlap && !(std::abs(heights(*by, *of)[f][v] - exact) <= sure_height(*by, *of)))
+            FAIL(i);
+        }
+        none_above = none_above || !any;
+      }
+    }
+    PairCutter pairs;
+    pairs.add(s, t, 0);
+    const bool apart = pairs.size() == 0;
+    n_apart += apart ? 1U : 0U;
+    if (apart && !none_above) FAIL("apart " << i);
+    if (none_above && overlap_volume(a, b) != 0) FAIL("a volume " << i);
+  }
+  CHECK(n_apart > 500);
 }
 
 TEST_CASE("a mesh against itself gives each tetrahedron its own volume", "[m2m][supermesh]") {
