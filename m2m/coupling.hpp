@@ -40,6 +40,9 @@
 // the cell, or all cells around the point, `snapped` if it covers them in part, otherwise
 // `outside`.
 //
+// A mesh of triangles or edges (MeshView::dimension) couples likewise, by kinds linear, nearest and
+// projection (guide/surfaces.md).
+//
 // The result depends only on the meshes and the fields: not on the number of PEs or pieces, the
 // voxels, or the order of messages.
 #pragma once
@@ -67,15 +70,16 @@ struct CouplingOptions {
   /// nearest, Keep is Nearest.
   OutsidePolicy policy = Keep{};
   TransferKind kind = TransferKind::linear;
-  /// A point outside that is at most so far from a tetrahedron, in units of the mesh, snaps to the
-  /// nearest one. Its value is that of the nearest point there. Kinds that are not conservative.
+  /// A point outside that is at most so far from a cell, in units of the mesh, snaps to the nearest
+  /// one. Its value is that of the nearest point there. 0 with kind projection: however far it is.
+  /// Kinds that are not conservative.
   double tolerance = 0;
   /// Keeps values within those of the vertices of the donor. It matters for points that snap within
   /// rounding, whose values extrapolate, and for second_order, which then is `limited`.
   /// Kinds that are not conservative.
   bool clamp = false;
-  /// What the values belong to. Sources: anything for linear and conservative kinds, nodes for the
-  /// others. Targets: nodes, or cells for conservative kinds.
+  /// What the values belong to. Sources: anything for linear, projection and conservative kinds,
+  /// nodes for the others. Targets: nodes, or cells for conservative kinds.
   Centring source_values = Centring::nodes;
   Centring target_values = Centring::nodes;
   /// Called with the name of each phase ("broad", "narrow") when it starts; may be null. It outlives

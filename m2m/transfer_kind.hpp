@@ -12,6 +12,7 @@ enum class TransferKind : std::uint8_t {
   second_order,  ///< with recovered gradients: third order where the field is smooth, not bounded
   limited,       ///< the same, kept within the values at the corners of the tetrahedron
   nearest,       ///< the value of the nearest vertex, also outside: first order, bounded
+  projection,    ///< linear, and outside at the nearest point of a cell: for walls, second order
   conservative,  ///< L2 projection: keeps the integral; second order, not bounded
   conservative_bounded,  ///< the same, kept within the source values that overlap
   conservative_lumped,   ///< with lumped masses: keeps integral and bounds, but smooths
@@ -21,16 +22,21 @@ inline constexpr std::array all_transfer_kinds{
     TransferKind::second_order,
     TransferKind::limited,
     TransferKind::nearest,
+    TransferKind::projection,
     TransferKind::conservative,
     TransferKind::conservative_bounded,
     TransferKind::conservative_lumped,
 };
 
-/// "linear", "second-order", "limited", "nearest", "conservative",
+/// "linear", "second-order", "limited", "nearest", "projection", "conservative",
 /// "conservative-bounded" or "conservative-lumped".
 [[nodiscard]] const char* name_of(TransferKind kind) noexcept;
 /// The kind of a name. Throws Error (bad_argument) for any other text.
 [[nodiscard]] TransferKind parse_transfer_kind(const std::string& text);
+
+/// Throws Error (bad_argument) if a source whose cells have this dimension (TetMesh::dimension) has no
+/// such kind: walls and lines have kinds linear, nearest and projection.
+void require_dimension(TransferKind kind, std::int32_t dimension);
 
 /// Conservative kinds integrate over the intersections of tetrahedra; the others interpolate.
 [[nodiscard]] constexpr bool is_conservative(TransferKind kind) noexcept {

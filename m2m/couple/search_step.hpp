@@ -25,8 +25,9 @@ struct SearchStep {
 
 /// What a search finds for a target piece; it is kept for applications.
 struct TargetFound {
-  std::vector<Status> status{};    ///< per place; `snapped` stands for covered in part, too
-  std::vector<double> distance{};  ///< per point that the piece owns; empty: conservative kinds
+  std::vector<Status> status{};     ///< per place; `snapped` stands for covered in part, too
+  std::vector<double> distance{};   ///< per point that the piece owns; empty: conservative kinds
+  std::vector<std::int8_t> side{};  ///< likewise, of a wall; empty: all are 0
   Tally tally{};
   WorstPlaces worst{};
   GivenPlaces given{};
@@ -35,7 +36,7 @@ struct TargetFound {
 
   template <class Ar>
   void serialize(Ar& ar) {
-    ar(status, distance, tally, worst, given, mass, covered_volumes);
+    ar(status, distance, side, tally, worst, given, mass, covered_volumes);
   }
 };
 
