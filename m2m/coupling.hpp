@@ -42,6 +42,9 @@
 // the cell, or all cells around the point, `snapped` if it covers them in part, otherwise
 // `outside`.
 //
+// A mesh of triangles or edges (MeshView::dimension) couples likewise, by kinds linear, nearest and
+// projection (guide/surfaces.md).
+//
 // Nodal forces go back by the transposed rows, so that their sum, and with linear rows that of their
 // moments, stays as it is to rounding. One search serves both:
 //
@@ -82,16 +85,17 @@ struct CouplingOptions {
   /// nearest, Keep is Nearest.
   OutsidePolicy policy = Keep{};
   TransferKind kind = TransferKind::linear;
-  /// A point outside that is at most so far from a tetrahedron, in units of the mesh, snaps to the
-  /// nearest one. Its value is that of the nearest point there. Kinds that are not conservative.
+  /// A point outside that is at most so far from a cell, in units of the mesh, snaps to the nearest
+  /// one. Its value is that of the nearest point there. 0 with kind projection: however far it is.
+  /// Kinds that are not conservative.
   double tolerance = 0;
   /// Keeps values within those of the vertices of the donor, or of the neighbours. It matters for
   /// points that snap within rounding, whose values extrapolate, for moving least squares, and for
   /// second_order, which then is `limited`. Kinds that are not conservative.
   bool clamp = false;
   std::int32_t order = 1;  ///< of the polynomials of moving least squares: 1 or 2
-  /// What the values belong to. Sources: anything for linear and conservative kinds, nodes for the
-  /// others. Targets: nodes, or cells for conservative kinds.
+  /// What the values belong to. Sources: anything for linear, projection and conservative kinds,
+  /// nodes for the others. Targets: nodes, or cells for conservative kinds.
   Centring source_values = Centring::nodes;
   Centring target_values = Centring::nodes;
   /// Called with the name of each phase ("broad", "narrow") when it starts; may be null. It outlives

@@ -12,6 +12,7 @@ enum class TransferKind : std::uint8_t {
   second_order,  ///< with recovered gradients: third order where the field is smooth, not bounded
   limited,       ///< the same, kept within the values at the corners of the tetrahedron
   nearest,       ///< the value of the nearest vertex, also outside: first order, bounded
+  projection,    ///< linear, and outside at the nearest point of a cell: for walls, second order
   /// the polynomial that fits the values of the nearest vertices best, of clouds or of meshes, also
   /// outside: second order, or third (CouplingOptions::order); not bounded
   moving_least_squares,
@@ -24,17 +25,23 @@ inline constexpr std::array all_transfer_kinds{
     TransferKind::second_order,
     TransferKind::limited,
     TransferKind::nearest,
+    TransferKind::projection,
     TransferKind::moving_least_squares,
     TransferKind::conservative,
     TransferKind::conservative_bounded,
     TransferKind::conservative_lumped,
 };
 
-/// "linear", "second-order", "limited", "nearest", "moving-least-squares", "conservative",
+/// "linear", "second-order", "limited", "nearest", "projection", "moving-least-squares", "conservative",
 /// "conservative-bounded" or "conservative-lumped".
 [[nodiscard]] const char* name_of(TransferKind kind) noexcept;
 /// The kind of a name. Throws Error (bad_argument) for any other text.
 [[nodiscard]] TransferKind parse_transfer_kind(const std::string& text);
+
+/// Throws Error (bad_argument) if a source whose cells have this dimension (TetMesh::dimension) has no
+/// such kind: walls and lines have kinds linear, nearest, projection and
+/// moving_least_squares.
+void require_dimension(TransferKind kind, std::int32_t dimension);
 
 /// Conservative kinds integrate over the intersections of tetrahedra; the others give values at
 /// points.

@@ -43,6 +43,15 @@ Point offset_to(const Segment& s, const Point& p) noexcept {
   return out;
 }
 
+/// How far the nearest point, which is between the ends, is on the way from one to the other.
+double part_of_way(const Point& from, const Point& to, const Point& p) noexcept {
+  return ratio([&](auto number) { return dot(way(number, from, to), way(number, from, p)); },
+               [&](auto number) {
+                 const auto along = way(number, from, to);
+                 return dot(along, along);
+               });
+}
+
 Segment edge(const Triangle& t, std::size_t i) noexcept {
   return {t.corners[i], t.corners[(i + 1) % 3]};
 }
@@ -138,6 +147,50 @@ Point offset_to(const Triangle& triangle, const Point& p) noexcept {
       ratio([&](auto n) { return dot(normal(n), way(n, p, a)) * normal(n).z; },
             [&](auto n) { return dot(normal(n), normal(n)); }),
   };
+}
+
+std::array<double, 2> nearest_weights(const Segment& segment, const Point& p) noexcept {
+  const SegmentPart part = nearest_part(segment, p);
+  if (part == SegmentPart::from) return {1, 0};
+  if (part == SegmentPart::to) return {0, 1};
+  return {part_of_way(segment.to, segment.from, p), part_of_way(segment.from, segment.to, p)};
+}
+
+std::array<double, 3> nearest_weights(const Triangle& triangle, const Point& p) noexcept {
+  const auto& c = triangle.corners;
+  const std::array<int, 3> sides = shapes::edge_sides(c, p);
+  std::array<double, 3> weights{};
+  if (shapes::is_over_face(sides)) {
+    const auto normal = [&](auto number) {
+      return cross(way(number, c[0], c[1]), way(number, c[0], c[2]));
+    };
+    for (std::size_t i = 0; i < 3; ++i)
+      if (sides[i] != 0)
+        weights[(i + 2) % 3] = ratio(
+            [&](auto number) {
+              return dot(normal(number),
+                         cross(way(number, c[i], c[(i + 1) % 3]), way(number, c[i], p)));
+            },
+            [&](auto number) { return dot(normal(number), normal(number)); });
+    return weights;
+  }
+  // On an edge if the nearest point of its line is between its ends, which holds for one edge beyond
+  // which `p` is at most; otherwise at the end of two of them.
+  for (std::size_t i = 0; i < 3; ++i)
+    if (shapes::may_be_on_edge(sides, i) &&
+        nearest_part(edge(triangle, i), p) == SegmentPart::between) {
+      const auto [from, to] = nearest_weights(edge(triangle, i), p);
+      weights[i] = from;
+      weights[(i + 1) % 3] = to;
+      return weights;
+    }
+  for (std::size_t i = 0; i < 3; ++i)
+    if (nearest_part(edge(triangle, i), p) == SegmentPart::from &&
+        nearest_part({c[i], c[(i + 2) % 3]}, p) == SegmentPart::from) {
+      weights[i] = 1;
+      break;
+    }
+  return weights;
 }
 
 Point nearest_point(const Triangle& triangle, const Point& p) noexcept {

@@ -24,6 +24,9 @@ std::span<const Status> AnyPiece::status(CouplingId id) const {
 std::span<const double> AnyPiece::distance(CouplingId id) const {
   return couplings.target(id).found().distance;
 }
+std::span<const std::int8_t> AnyPiece::side(CouplingId id) const {
+  return couplings.target(id).found().side;
+}
 const OutsidePolicy& AnyPiece::policy(CouplingId id) const {
   return couplings.target(id).setup.policy;
 }
@@ -108,9 +111,10 @@ void AnyPiece::m2m_name_points(CouplingId id) {
 }
 void AnyPiece::m2m_name(CouplingId id) {
   const MeshView mesh = m2m_view();
-  couplings.source(id).setup.ledger.local().add(SourcePiece{
-      m2m_owner(), box_of_nearest(mesh), static_cast<std::uint8_t>(mesh.points.empty() ? 0 : 1),
-      static_cast<std::uint8_t>(mesh.tets.empty() ? 0 : 1)});
+  const CouplingSetup& setup = couplings.source(id).setup;
+  setup.ledger.local().add(SourcePiece{m2m_owner(), box_of_nearest(mesh, setup),
+                                       static_cast<std::uint8_t>(mesh.points.empty() ? 0 : 1),
+                                       static_cast<std::uint8_t>(mesh.tets.empty() ? 0 : 1)});
 }
 void AnyPiece::m2m_receive_names(CouplingId id, const std::vector<SourcePiece>& sources) {
   if (couplings.target(id).name_sources(m2m_view(), sources)) m2m_ask(id);

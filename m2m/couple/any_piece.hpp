@@ -12,7 +12,8 @@
 //            have arrived in one pass;                   adds up how much of each tetrahedron is
 //            makes rows of overlaps                      covered
 //   name     names itself (Ledger)                       asks for nearest vertices likewise, if
-//                                                        points outside need them
+//                                                        points outside need them; with kind
+//                                                        projection for nearest cells
 //   choose   keeps what was chosen      ← Choice         decides
 //   give     multiplies                 GivenValues →    writes a round that is complete, with
 //                                                        conservative kinds after a projection
@@ -70,9 +71,13 @@ class AnyPiece {
   /// Where the points of this piece lie in the source of a coupling: per point owned.
   [[nodiscard]] std::span<const Status> status(CouplingId id) const;
   /// How far the points of this piece lie from the source, in units of the mesh: per point owned. 0
-  /// if inside or on the boundary; if snapped, from the tetrahedron; if outside, from the nearest
+  /// if inside or on the boundary; if snapped, from the nearest cell; if outside, from the nearest
   /// vertex. Empty for conservative kinds.
   [[nodiscard]] std::span<const double> distance(CouplingId id) const;
+  /// On which side of a source of triangles the points of this piece lie, per point owned: 1 where
+  /// the normal of the donor points to, -1 on the other side, 0 in its plane or without a donor.
+  /// Beyond an edge the sides of its two triangles may differ. Empty if all are 0.
+  [[nodiscard]] std::span<const std::int8_t> side(CouplingId id) const;
   /// The policy of a coupling whose target this piece belongs to.
   [[nodiscard]] const OutsidePolicy& policy(CouplingId id) const;
 

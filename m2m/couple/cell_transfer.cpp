@@ -31,7 +31,7 @@ void choose_coupling(TransferOptions& options, CellForm form) {
   options.source_values = form == CellForm::constant ? Centring::cells : Centring::corners;
   if (is_conservative(options.kind))
     options.target_values = Centring::cells;
-  else
+  else if (options.kind != TransferKind::projection)
     options.kind = TransferKind::linear;
 }
 
@@ -55,10 +55,13 @@ TaskOf<CellOutcome> transfer_cells(const TetMesh& source, const std::vector<Fiel
         "choose policy keep or nearest for fields in elements");
   if (options.clamp && options.kind == TransferKind::second_order)
     options.kind = TransferKind::limited;
-  const CellForm from = form_of(options.kind);
+  const TransferKind kind = options.kind;
+  const CellForm from = form_of(kind);
   const CellForm to = is_conservative(options.kind) ? CellForm::constant : CellForm::points;
   choose_coupling(options, from);
   check(options);  // before there are Workers
+  require_dimension(kind, source.dimension);
+  if (is_conservative(kind)) require_dimension(kind, target.dimension);
   DistributedMesh give, take;
   co_await epoch([&] {
     give = scatter_cells(source, fields, n_parts, method, from);

@@ -68,10 +68,10 @@ void check(const CouplingOptions& options) {
          " gives values at points: show the centroids of the cells as the target's points, or "
          "choose a conservative kind for target values in cells");
   if (options.source_values == Centring::nodes) return;
-  if (options.kind != TransferKind::linear)
+  if (options.kind != TransferKind::linear && options.kind != TransferKind::projection)
     fail(ErrorCode::bad_argument, "kind ", name_of(options.kind),
-         " takes values at nodes: choose linear or a conservative kind for source values in cells "
-         "or at their corners");
+         " takes values at nodes: choose linear, projection or a conservative kind for source "
+         "values in cells or at their corners");
   if (std::holds_alternative<Nearest>(options.policy))
     fail(ErrorCode::bad_argument, "kind ", name_of(options.kind),
          " with source values in cells has no nearest vertex for points outside: choose policy "

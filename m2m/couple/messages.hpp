@@ -55,6 +55,10 @@ struct CouplingSetup {
   [[nodiscard]] bool applies_at_target() const {
     return is_conservative() || is_transposed() || fits();
   }
+  /// Points that no cell holds take the value at the nearest cell, however far it is.
+  [[nodiscard]] bool seeks_nearest_cells() const {
+    return kind == TransferKind::projection && tolerance == 0;
+  }
   /// The values of points are the solution of a system of equations over all target pieces.
   [[nodiscard]] bool has_projection() const {
     return is_conservative() && target_values == Centring::nodes;
@@ -67,10 +71,12 @@ struct CouplingSetup {
 template <class Message>
 using Addressed = std::vector<std::pair<collide::OwnerId, Message>>;
 
-/// Which of your tetrahedra hold these points?
+/// Which of your cells hold these points?
 struct DonorQuery {
   std::vector<std::uint32_t> boxes;  ///< of the source piece's cover, where there are points
   std::vector<Point> points;
+  /// Which cells are nearest to them? Per point: farther ones are not of interest. Otherwise empty.
+  std::vector<double> reaches{};
 };
 /// Which of your vertices are nearest to these points?
 struct NearestQuery {

@@ -27,6 +27,7 @@ double volume_of(const MeshView& mesh, const Tet& tet) {
 
 std::vector<Aabb> OverlapSearch::start(const MeshView& mesh) {
   validate(mesh);
+  require_dimension(TransferKind::conservative, mesh.dimension);
   if (to_cells_) {
     numbers_.resize(mesh.own_tets().size());
     std::iota(numbers_.begin(), numbers_.end(), 0);

@@ -1,6 +1,7 @@
 #include "m2m/couple/point_search.hpp"
 
 #include "collide/hit_receivers.hpp"
+#include "m2m/rows/search/nearest_cells.hpp"
 #include "runtime/core/error.hpp"
 
 #include <algorithm>
@@ -43,7 +44,7 @@ SearchStep PointSearch::next(const CouplingSetup& setup, const MeshView& mesh, T
     }
   }
   if (stage_ == Stage::ask_nearest) {
-    step.queries = nearest_queries(setup.id, mesh);
+    step.queries = nearest_queries(setup, mesh);
     if (!step.queries.empty()) return step;
   }
   step.choices = choices(setup, mesh, found);
@@ -114,15 +115,28 @@ void PointSearch::name_sources(const MeshView& mesh, std::span<const SourcePiece
   stage_ = Stage::ask_nearest;
 }
 
-Addressed<SearchQuery> PointSearch::nearest_queries(CouplingId id, const MeshView& mesh) {
+Addressed<SearchQuery> PointSearch::nearest_queries(const CouplingSetup& setup,
+                                                    const MeshView& mesh) {
+  const bool of_cells = setup.seeks_nearest_cells();
   std::map<collide::OwnerId, NearestQuery> queries;
+  std::map<collide::OwnerId, DonorQuery> cell_queries;
   std::erase_if(to_ask_, [&](std::uint32_t key) {
     NearestSoFar& so_far = nearest_[key];
     const Point& point = mesh.points[so_far.row];
     const NearestParts::RankedPart next = nearest_parts_.next(point, so_far.asked);
-    if (next == NearestParts::none || next.squared_distance > so_far.squared_distance) return true;
+    const double distance = best_[so_far.row].candidate.distance;
+    const double squared = of_cells ? squared_limit(distance) : so_far.squared_distance;
+    if (next == NearestParts::none || next.squared_distance > squared) return true;
     so_far.asked = next;
-    NearestQuery& query = queries[sources_[static_cast<std::size_t>(next.number)]];
+    const collide::OwnerId source = sources_[static_cast<std::size_t>(next.number)];
+    if (of_cells) {
+      DonorQuery& query = cell_queries[source];
+      asked_[source].rows.push_back(so_far.row);
+      query.points.push_back(point);
+      query.reaches.push_back(distance);
+      return false;
+    }
+    NearestQuery& query = queries[source];
     if (fits_) query.n_nearest = static_cast<std::uint32_t>(fits_->n_wanted());
     query.keys.push_back(key);
     query.points.push_back(point);
@@ -131,7 +145,9 @@ Addressed<SearchQuery> PointSearch::nearest_queries(CouplingId id, const MeshVie
   });
   Addressed<SearchQuery> out;
   for (auto& [source, query] : queries)
-    out.emplace_back(source, SearchQuery{id, {}, std::move(query)});
+    out.emplace_back(source, SearchQuery{setup.id, {}, std::move(query)});
+  for (auto& [source, query] : cell_queries)
+    out.emplace_back(source, SearchQuery{setup.id, {}, std::move(query)});
   return out;
 }
 
@@ -175,8 +191,18 @@ Addressed<Choice> PointSearch::choices(const CouplingSetup& setup, const MeshVie
     found.status[v] = best_[v].candidate.status;
     found.distance[v] = best_[v].candidate.distance;  // infinite if outside
     ++found.tally.counts[static_cast<std::size_t>(found.status[v])];
+    if (best_[v].candidate.side == 0) continue;
+    found.side.resize(best_.size());
+    found.side[v] = best_[v].candidate.side;
   }
   const bool takes_outside = std::holds_alternative<Nearest>(setup.policy);
+  if (setup.seeks_nearest_cells()) {
+    if (source_has_points_ && found.tally.count(Status::outside) > 0)
+      fail(ErrorCode::bad_mesh,
+           "kind projection has no cell to project on: no source piece shows any; choose kind "
+           "nearest for a source of points");
+    nearest_.clear();
+  }
   for (const NearestSoFar& nearest : nearest_) {
     const std::uint32_t row = nearest.row;
     const bool is_outside = found.status[row] == Status::outside;

@@ -1,5 +1,5 @@
 // The search of a target piece for the donors of its points: the candidates so far, and the
-// vertices that are nearest to points outside.
+// vertices, or with kind projection the cells, that are nearest to points outside.
 #pragma once
 
 #include "m2m/couple/point_fits.hpp"
@@ -67,8 +67,9 @@ class PointSearch {
   void list_outside(TransferKind kind);
   [[nodiscard]] Addressed<Choice> fit_choices(CouplingId id, const MeshView& mesh,
                                               TargetFound& found) const;
-  /// The next queries for points that need a nearest vertex; none if all are answered.
-  [[nodiscard]] Addressed<SearchQuery> nearest_queries(CouplingId id, const MeshView& mesh);
+  /// The next queries for points that need a nearest vertex, or cell; none if all are answered.
+  [[nodiscard]] Addressed<SearchQuery> nearest_queries(const CouplingSetup& setup,
+                                                       const MeshView& mesh);
   /// What each source piece that was asked shall send.
   [[nodiscard]] Addressed<Choice> choices(const CouplingSetup& setup, const MeshView& mesh,
                                           TargetFound& found);

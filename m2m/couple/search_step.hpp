@@ -29,6 +29,7 @@ struct TargetFound {
   std::vector<Status> status{};  ///< per place; `snapped` stands for covered in part, too
   /// Per point that the piece owns; empty: conservative kinds, transposed couplings.
   std::vector<double> distance{};
+  std::vector<std::int8_t> side{};  ///< likewise, of a wall; empty: all are 0
   Tally tally{};
   WorstPlaces worst{};
   GivenPlaces given{};
@@ -37,7 +38,7 @@ struct TargetFound {
 
   template <class Ar>
   void serialize(Ar& ar) {
-    ar(status, distance, tally, worst, given, mass, covered_volumes);
+    ar(status, distance, side, tally, worst, given, mass, covered_volumes);
   }
 };
 

@@ -48,8 +48,13 @@ Donor in_tet(std::int32_t tet, const Weights& weights, Centring centring) {
 
 }  // namespace
 
-Aabb box_of_nearest(const MeshView& mesh) {
+Aabb box_of_nearest(const MeshView& mesh, const CouplingSetup& setup) {
   Aabb box = collide::no_box<double, 3>();
+  if (setup.seeks_nearest_cells()) {
+    for (const Tet& cell : mesh.own_tets())
+      for (const VertexId v : cell) grow(box, mesh.points[static_cast<std::size_t>(v)]);
+    return box;
+  }
   for (const std::int32_t v : points_of_nearest(mesh))
     grow(box, mesh.points[static_cast<std::size_t>(v)]);
   return box;
@@ -59,7 +64,8 @@ DonorAnswer SourceSide::answer_points(collide::OwnerId target, BestDonors found)
   if (setup.source_values != Centring::nodes)
     for (std::size_t i = 0; i < found.donors.size(); ++i)
       found.donors[i] = in_tet(found.tets[i], found.donors[i].weights, setup.source_values);
-  given_[target].donors = std::move(found.donors);
+  std::vector<Donor>& donors = given_[target].donors;
+  donors.insert(donors.end(), found.donors.begin(), found.donors.end());
   return {std::move(found.points), std::move(found.candidates)};
 }
 
@@ -105,6 +111,7 @@ void SourceSide::prepare(const MeshView& mesh) {
   if (stays_ == SameMesh::Answer::moved) {
     cover_ = {};
     nearest_.reset();
+    nearest_cells_.reset();
   }
   if (!needs_gradients(setup.kind) || has_fits_) return;
   has_fits_ = true;

@@ -8,6 +8,7 @@ namespace tess::m2m {
 
 std::vector<Aabb> SourceSide::start_search(const MeshView& mesh) {
   validate(mesh);
+  require_dimension(setup.kind, mesh.dimension);
   queries_.clear();
   given_.clear();
   attached_.clear();
@@ -19,8 +20,11 @@ std::vector<Aabb> SourceSide::start_search(const MeshView& mesh) {
   nearest_.reset();
   gradient_vertices_.clear();
   gradient_rows_ = {};
-  cover_ = {};
-  if (setup.collides()) cover_ = cover_tets(mesh.points, mesh.own_tets(), setup.tolerance);
+  nearest_cells_.reset();
+  // The cells of a wall hold hardly any point, so all points ask for the nearest.
+  const bool holds_points =
+      setup.collides() && (mesh.dimension == 3 || !setup.seeks_nearest_cells());
+  cover_ = holds_points ? cover_tets(mesh.points, mesh.own_tets(), setup.tolerance) : Cover{};
   return cover_.boxes;
 }
 
@@ -29,18 +33,40 @@ bool SourceSide::add(SearchQuery query) {
   return queries_.size() == 1;
 }
 
-Addressed<SearchAnswer> SourceSide::answers(const MeshView& mesh, std::uint64_t& n_tested) {
-  std::vector<SearchQuery> queries = std::exchange(queries_, {});
+std::vector<BestDonors> SourceSide::locate(const MeshView& mesh,
+                                           std::span<const SearchQuery> queries,
+                                           std::uint64_t& n_tested) {
+  std::vector<BestDonors> located;
   std::vector<std::uint32_t> boxes;
   std::vector<std::span<const Point>> lists;
-  for (const SearchQuery& query : queries)
-    if (const auto* of_points = std::get_if<DonorQuery>(&query.what)) {
-      boxes.insert(boxes.end(), of_points->boxes.begin(), of_points->boxes.end());
-      lists.emplace_back(of_points->points);
+  std::vector<std::size_t> at;  // of each list, in located
+  for (const SearchQuery& query : queries) {
+    const auto* of_points = std::get_if<DonorQuery>(&query.what);
+    if (of_points == nullptr) continue;
+    const auto& [of_boxes, points, reaches] = *of_points;
+    if (mesh.dimension == 3 && reaches.empty()) {
+      boxes.insert(boxes.end(), of_boxes.begin(), of_boxes.end());
+      lists.emplace_back(points);
+      at.push_back(located.size());
+      located.emplace_back();
+      continue;
     }
+    if (!nearest_cells_) nearest_cells_.emplace(mesh);
+    located.push_back(reaches.empty()
+                          ? nearest_cells_->snapped(mesh, points, setup.tolerance, n_tested)
+                          : nearest_cells_->within(mesh, points, reaches, n_tested));
+  }
+  if (lists.empty()) return located;
   sort_unique_boxes(boxes);
-  std::vector<BestDonors> located;
-  if (!lists.empty()) located = best_donors(mesh, cover_, boxes, lists, setup.tolerance, n_tested);
+  std::vector<BestDonors> in_cells =
+      best_donors(mesh, cover_, boxes, lists, setup.tolerance, n_tested);
+  for (std::size_t k = 0; k < at.size(); ++k) located[at[k]] = std::move(in_cells[k]);
+  return located;
+}
+
+Addressed<SearchAnswer> SourceSide::answers(const MeshView& mesh, std::uint64_t& n_tested) {
+  std::vector<SearchQuery> queries = std::exchange(queries_, {});
+  std::vector<BestDonors> located = locate(mesh, queries, n_tested);
   Addressed<SearchAnswer> out;
   auto next = located.begin();
   for (SearchQuery& query : queries) {

@@ -7,6 +7,7 @@
 #include "m2m/mesh_view.hpp"
 #include "m2m/rows/search/best_donors.hpp"
 #include "m2m/rows/search/cover.hpp"
+#include "m2m/rows/search/nearest_cells.hpp"
 #include "m2m/rows/search/nearest_vertex.hpp"
 #include "m2m/rows/search/same_mesh.hpp"
 #include "m2m/rows/weights/rows.hpp"
@@ -21,9 +22,9 @@
 
 namespace tess::m2m {
 
-/// The box around the points of a piece that can be the nearest of others: the corners of
-/// tetrahedra that it owns, or without tetrahedra all its points.
-[[nodiscard]] Aabb box_of_nearest(const MeshView& mesh);
+/// The box around the points of a piece that can be the nearest of others: the corners of cells
+/// that it owns, or without cells all its points. If cells are sought, that of its own cells.
+[[nodiscard]] Aabb box_of_nearest(const MeshView& mesh, const CouplingSetup& setup);
 
 class SourceSide {
  public:
@@ -72,6 +73,10 @@ class SourceSide {
     }
   };
 
+  /// What the queries for donors find, in their order.
+  [[nodiscard]] std::vector<BestDonors> locate(const MeshView& mesh,
+                                               std::span<const SearchQuery> queries,
+                                               std::uint64_t& n_tested);
   [[nodiscard]] DonorAnswer answer_points(collide::OwnerId target, BestDonors found);
   [[nodiscard]] NearestAnswer answer_nearest(const MeshView& mesh, const NearestQuery& query);
   [[nodiscard]] OverlapAnswer answer_overlaps(const MeshView& mesh, collide::OwnerId target,
@@ -109,6 +114,7 @@ class SourceSide {
   bool has_fits_ = false;  // for the last search
   // Of the points owned; built when it is asked for, and again after a migration.
   std::optional<NearestVertex> nearest_;
+  std::optional<NearestCells> nearest_cells_;  // likewise
 };
 
 }  // namespace tess::m2m

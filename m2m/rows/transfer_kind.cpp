@@ -1,5 +1,6 @@
 #include "m2m/transfer_kind.hpp"
 
+#include "m2m/mesh.hpp"
 #include "runtime/core/error.hpp"
 
 namespace tess::m2m {
@@ -14,6 +15,8 @@ const char* name_of(TransferKind kind) noexcept {
       return "limited";
     case TransferKind::nearest:
       return "nearest";
+    case TransferKind::projection:
+      return "projection";
     case TransferKind::moving_least_squares:
       return "moving-least-squares";
     case TransferKind::conservative:
@@ -24,6 +27,14 @@ const char* name_of(TransferKind kind) noexcept {
       return "conservative-lumped";
   }
   return "";
+}
+
+void require_dimension(TransferKind kind, std::int32_t dimension) {
+  if (dimension == 3 || kind == TransferKind::linear || kind == TransferKind::nearest ||
+      kind == TransferKind::projection || kind == TransferKind::moving_least_squares)
+    return;
+  fail(ErrorCode::bad_argument, "kind ", name_of(kind), " needs tetrahedra; the mesh has ",
+       cells_of(dimension), ": choose linear, nearest or projection");
 }
 
 TransferKind parse_transfer_kind(const std::string& text) {

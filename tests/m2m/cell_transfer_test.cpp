@@ -139,7 +139,7 @@ TEST_CASE("kinds with gradients are exact for linear fields between all types of
           CHECK(std::all_of(got.values.begin(), got.values.end(), [&](double value) {
             return std::find(given.values.begin(), given.values.end(), value) != given.values.end();
           }));
-        } else if (!is_exact(kind)) {
+        } else if (!is_exact(kind) && kind != TransferKind::moving_least_squares) {
           CHECK(*std::min_element(got.values.begin(), got.values.end()) >= *low - 1e-13);
           CHECK(*std::max_element(got.values.begin(), got.values.end()) <= *high + 1e-13);
         }

@@ -55,7 +55,8 @@ kit::Chart chart_of(const Reports& reports, const std::string& title, const std:
 /// The least order that is no failure, a quarter below the order of the kind for smooth fields.
 double least_order(const std::string& kind) {
   if (kind == "second-order") return 2.75;
-  if (kind == "linear" || kind == "limited" || kind == "conservative") return 1.75;
+  if (kind == "linear" || kind == "limited" || kind == "conservative" || kind == "projection")
+    return 1.75;
   return 0.75;
 }
 

@@ -22,6 +22,8 @@ struct Candidate {
   GlobalId tet = std::numeric_limits<GlobalId>::max();
   Status status = Status::outside;
   Place place = Place::elsewhere;
+  /// of a triangle, on which the point is: side_of() (foot.hpp); otherwise 0
+  std::int8_t side = 0;
 };
 
 /// True if `a` is better than `b`. A corner that coincides with the point comes first, then

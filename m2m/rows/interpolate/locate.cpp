@@ -40,13 +40,6 @@ double twice_area(const Point& a, const Point& b, const Point& c) {
   return std::hypot(normal[0], normal[1], normal[2]);
 }
 
-/// The distance from a face up to which a point outside snaps.
-double tolerance(const std::array<Point, 4>& corners) {
-  double largest = 0;
-  for (const Point& p : corners) largest = std::max(largest, largest_coordinate(p));
-  return snap_edges * longest_edge(corners) + snap_ulps * largest;
-}
-
 /// True if a point outside snaps: it must be near to the plane of every face that it is outside of,
 /// and lie in the padded box. (At a sharp edge both planes are near even far from the tetrahedron.)
 bool snaps(const Point& p, const std::array<Point, 4>& corners, const Weights& volume) {
@@ -54,7 +47,7 @@ bool snaps(const Point& p, const std::array<Point, 4>& corners, const Weights& v
   const double total = orientation(corners[0], corners[faces_of_tet[0][0]],
                                    corners[faces_of_tet[0][1]], corners[faces_of_tet[0][2]]);
   if (total == 0) return false;
-  const double reach = tolerance(corners);
+  const double reach = snap_reach(corners);
   for (std::size_t i = 0; i < 4; ++i) {
     if (volume[i] == 0 || (volume[i] < 0) == (total < 0)) continue;
     const double area = twice_area(corners[faces_of_tet[i][0]], corners[faces_of_tet[i][1]],
@@ -65,6 +58,12 @@ bool snaps(const Point& p, const std::array<Point, 4>& corners, const Weights& v
 }
 
 }  // namespace
+
+double snap_reach(const std::array<Point, 4>& corners) {
+  double largest = 0;
+  for (const Point& p : corners) largest = std::max(largest, largest_coordinate(p));
+  return snap_edges * longest_edge(corners) + snap_ulps * largest;
+}
 
 std::optional<Location> locate(const Point& p, const std::array<Point, 4>& corners) {
   for (std::size_t i = 0; i < 4; ++i) {
@@ -110,7 +109,7 @@ std::optional<Location> locate(const Point& p, const std::array<Point, 4>& corne
 
 Aabb search_box(const std::array<Point, 4>& corners) {
   Aabb box = collide::box_around(corners);
-  const double pad = 2 * tolerance(corners);
+  const double pad = 2 * snap_reach(corners);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     box.lo[axis] -= pad;
     box.hi[axis] += pad;

@@ -31,6 +31,8 @@ namespace tess::m2m {
 /// plus snap_ulps times the largest coordinate of the tetrahedron.
 inline constexpr double snap_edges = 1e-10;
 inline constexpr double snap_ulps = 4 * 0x1p-52;
+/// This distance.
+[[nodiscard]] double snap_reach(const std::array<Point, 4>& corners);
 
 using Weights = std::array<double, 4>;
 

@@ -15,7 +15,9 @@ Rows<double> linear_rows(std::span<const Tet> tets, std::span<const PointInTet> 
     if (corner != point.weights.end()) {
       rows.add(tet[static_cast<std::size_t>(corner - point.weights.begin())], 1.0);
     } else {
-      for (std::size_t k = 0; k < 4; ++k) rows.add(tet[k], point.weights[k]);
+      for (std::size_t k = 0; k < 4; ++k)
+        if (k == 0 || tet[k] != tet[k - 1] || point.weights[k] != 0)  // a triangle repeats one
+          rows.add(tet[k], point.weights[k]);
     }
     rows.end_row();
   }
