@@ -110,9 +110,10 @@ TEST_CASE("feet on slivers, at any scale and far from the origin, are those of e
           corners[3] = corners[2];
           Point p;
           for (double& x : p) x = scale * (offset + place(random));
-          if (k % 3 == 0)  // near the plane, or in it but for rounding
+          if (k % 3 < 2)  // in the face, or on an edge, but for rounding
             for (std::size_t axis = 0; axis < 3; ++axis)
-              p[axis] = 0.2 * corners[0][axis] + 0.3 * corners[1][axis] + 0.5 * corners[2][axis];
+              p[axis] = 0.3 * corners[0][axis] + (k % 3 == 0 ? 0.3 : 0.7) * corners[1][axis] +
+                        (k % 3 == 0 ? 0.4 : 0.0) * corners[2][axis];
           INFO("scale " << scale << ", offset " << offset << ", " << sides[1] << ", case " << k);
           const tess::collide::Triangle triangle{{corners[0], corners[1], corners[2]}};
           const Foot foot = foot_of(p, corners, 2);
