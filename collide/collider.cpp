@@ -201,8 +201,8 @@ Task collide_once(Collider collider, HitReceivers to, Callback<void> taken) {
     if (refused) std::rethrow_exception(refused);
     co_return;
   }
-  const Summary summary =
-      co_await collider.managers.reduce<&Manager::prepare>(step, n_sampled(collider));
+  const Summary summary = co_await collider.managers.reduce<&Manager::prepare>(
+      step, n_sampled(collider), collider.voxels);
   if (taken) taken();
   co_await collide_taken(collider, step, summary, to);
 }

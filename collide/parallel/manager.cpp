@@ -24,7 +24,9 @@ ObjectList& Manager::pending() {
   return pending_->objects;
 }
 
-void Manager::prepare(std::uint64_t step, std::size_t n_sampled, const Callback<Summary>& target) {
+void Manager::prepare(std::uint64_t step, std::size_t n_sampled, const ArrayProxy<Voxel>& voxels,
+                      const Callback<Summary>& target) {
+  voxels_ = voxels;
   contribute(JoinSummaries{}, Summary(pending(), pe().value, n_sampled), target);
   round(step).delivery = std::move(pending_);
 }

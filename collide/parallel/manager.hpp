@@ -62,7 +62,8 @@ class Manager : public Group<Manager> {
   [[nodiscard]] bool is_colliding() const { return n_running_ != 0 || !rounds_.empty(); }
 
   /// The summary has so many boxes of this PE.
-  void prepare(std::uint64_t step, std::size_t n_sampled, const Callback<Summary>& target);
+  void prepare(std::uint64_t step, std::size_t n_sampled, const ArrayProxy<Voxel>& voxels,
+               const Callback<Summary>& target);
   /// The same for objects that come from another place than submit().
   [[nodiscard]] Summary take(std::uint64_t step, ObjectList objects, std::size_t n_sampled);
   /// Without a plan: the objects are dropped.
@@ -90,12 +91,12 @@ class Manager : public Group<Manager> {
   [[nodiscard]] const CollisionStatistics& last() const { return last_; }
   void report_last(const Callback<CollisionStatistics>& target) { contribute(sum, last_, target); }
 
-  /// For checkpoints, between two collisions. Throws Error (bad_value) if objects were submitted for
+  /// For checkpoints. Throws Error (bad_value) if objects were submitted for
   /// the next one.
   template <class Ar>
   void serialize(Ar& ar) {
     refuse_submitted(pending_ == nullptr ? 0 : pending_->objects.size());
-    ar(voxels_, last_);
+    ar(last_);  // prepare() sets the voxels, also on a PE that the run before had not
   }
   void absorb(Manager&& other) { last_ = last_ + other.last_; }
 

@@ -35,7 +35,6 @@ struct Copies {
 
 class Neighbours : public Group<Neighbours> {
  public:
-  Neighbours() = default;  ///< for restarts
   Neighbours(GroupProxy<Manager> managers, PairRules rules, double slack)
       : managers_(managers), rules_(rules), slack_(slack) {}
 
@@ -73,14 +72,6 @@ class Neighbours : public Group<Neighbours> {
   /// until forget().
   [[nodiscard]] bool keeps_none() const { return keeps_none_; }
 
-  /// As Manager::serialize(). Pairs are not saved: the first collision after a restart searches.
-  template <class Ar>
-  void serialize(Ar& ar) {
-    refuse_submitted(pending_.size());
-    ar(managers_, rules_, slack_, keeps_none_);
-  }
-  void absorb(Neighbours&& /*other*/) {}  // it has the same
-
  private:
   struct Round {
     Round(std::int32_t me, std::int32_t n_pes) : requests(me, n_pes) {}
@@ -101,9 +92,9 @@ class Neighbours : public Group<Neighbours> {
   void answer_if_asked(std::uint64_t step, Round& r);
   void test_if_complete(std::uint64_t step, Round& r);
 
-  GroupProxy<Manager> managers_;
-  PairRules rules_;
-  double slack_ = 0;
+  const GroupProxy<Manager> managers_;
+  const PairRules rules_;
+  const double slack_;
   ObjectList pending_;  // what is submitted for the next collision
   ObjectList spare_;    // its memory
   std::map<std::uint64_t, Round> rounds_;

@@ -5,7 +5,7 @@
 //       whole     three steps, and four more
 //       save      three steps, and a checkpoint
 //       resume    a checkpoint at once, and the four more
-//       early     a checkpoint while a search is under way
+//       early     a checkpoint while a search is under way, which waits for it, and the rest
 //       lose      as save, but a source piece is destroyed before the checkpoint
 //       lost      goes on from that
 #include "m2m/coupling.hpp"
@@ -153,23 +153,31 @@ Task run_as(std::string folder, std::string how) {
   if (how == "resume" || how == "lost") {
     state = co_await restart<State>(folder);
     co_await checkpoint(folder, state);
-    co_await (how == "lost" ? steps(state, 4) : go_on(state));
+    if (how == "lost")
+      co_await steps(state, 4);
+    else
+      co_await go_on(state);
     co_return;
   }
   co_await make(state);
   if (how == "early") {
     auto search = state.couplings.front().search();
-    co_await checkpoint(folder, state);  // throws Error
+    co_await checkpoint(folder, state);
+    co_await search;
+    co_await go_on(state);
+    co_return;
   }
   co_await steps(state, 3);
   if (how == "lose")
     co_await epoch([&] { state.source[{2}].destroy(); });
   else
     co_await give(state, 0, 1);
-  if (how == "whole")
+  if (how == "whole") {
     co_await go_on(state);
-  else
+  } else {
     co_await checkpoint(folder, state);
+    print("saved\n");
+  }
 }
 
 }  // namespace

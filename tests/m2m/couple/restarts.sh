@@ -10,7 +10,7 @@ exits 0 "^hash" "$program" "$scratch/none" whole --pes 1
 hash=$(cat "$scratch/out")
 # restarts BEFORE AFTER AGAIN: machines, as words before and after the program; each run begins with the checkpoint of the last.
 restarts() {
-  local folder=$scratch/saved$((passed + failed)) how=save want="" machine
+  local folder=$scratch/saved$((passed + failed)) how=save want="^saved$" machine
   for machine in "$@"; do
     exits 0 "$want" ${machine%@*} "$program" "$folder" $how ${machine#*@}
     how=resume want="^$hash$"
@@ -26,8 +26,9 @@ if [[ ${2:-} != *thread* ]]; then
   restarts "${mpirun[*]} -n 2@--pes 1" "@--pes 1" "${mpirun[*]} -n 2@--pes 2"
 fi
 
-exits 2 "no checkpoint can be made here: " "$program" "$scratch/early" early --pes 2
-exits 0 "" "$program" "$scratch/lost" lose --pes 2
+exits 0 "^hash" "$program" "$scratch/early" early --pes 2
+exits 0 "^$(cat "$scratch/out")$" "$program" "$scratch/early" resume --pes 1
+exits 0 "^saved$" "$program" "$scratch/lost" lose --pes 2
 exits 1 "Zone\[2\], a source piece of coupling .*, was destroyed after the last search" "$program" "$scratch/lost" lost --pes 1
 
 finish
