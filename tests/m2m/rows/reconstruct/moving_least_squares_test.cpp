@@ -89,7 +89,7 @@ double value_of(const MovingLeastSquares& fit, const std::vector<Point>& neighbo
   return sum;
 }
 
-double quadratic(const Point& p) {
+double quadratic_at(const Point& p) {
   return 2 - p[0] + 3 * p[1] * p[2] + p[2] * p[2] - 2 * p[0] * p[1] + 4 * p[1];
 }
 
@@ -151,7 +151,7 @@ TEST_CASE("polynomials of the order are exact, wherever and of whatever size the
       const auto neighbours = nearest(at, points, MovingLeastSquares::n_neighbours(order));
       const auto f = [&](const Point& p) {
         const Point d{(p[0] - at[0]) / scale, (p[1] - at[1]) / scale, (p[2] - at[2]) / scale};
-        return order == 2 ? quadratic(d) : 2 - d[0] + 3 * d[1] - 5 * d[2];
+        return order == 2 ? quadratic_at(d) : 2 - d[0] + 3 * d[1] - 5 * d[2];
       };
       MovingLeastSquares fit(order);
       if (fit.compute(at, neighbours).order < order) continue;
@@ -177,17 +177,17 @@ TEST_CASE("neighbours that determine less fall back", "[m2m][fits]") {
   for (Point& p : plane) p[2] = p[0] + 2 * p[1] - 1;
   const Point foot{0.5, 0.4, 0.3}, beside{0.5 + 0.02, 0.4 + 0.04, 0.3 - 0.02};
   CHECK(fit_of(plane, foot, quadratic, value) == Fit{2, 2});
-  CHECK(value == Approx(quadratic(foot)).margin(1e-10));
+  CHECK(value == Approx(quadratic_at(foot)).margin(1e-10));
   CHECK(fit_of(plane, beside, quadratic, value) == Fit{2, 2});
-  CHECK(value == Approx(quadratic(foot)).margin(1e-10));
+  CHECK(value == Approx(quadratic_at(foot)).margin(1e-10));
   std::vector<Point> line = random_points(60, 4);
   for (Point& p : line) p = {p[0], 2 * p[0], 1 - p[0]};
   CHECK(fit_of(line, {0.5, 1, 0.5}, quadratic, value) == Fit{2, 1});
-  CHECK(value == Approx(quadratic({0.5, 1, 0.5})).margin(1e-10));
+  CHECK(value == Approx(quadratic_at({0.5, 1, 0.5})).margin(1e-10));
   CHECK(fit_of(std::vector<Point>(40, {1, 2, 3}), {1, 2, 3.5}, quadratic, value) == Fit{0, 0});
-  CHECK(value == Approx(quadratic({1, 2, 3})));
+  CHECK(value == Approx(quadratic_at({1, 2, 3})));
   CHECK(fit_of({{1, 2, 3}}, {1, 2, 3}, quadratic, value) == Fit{0, 0});
-  CHECK(value == quadratic({1, 2, 3}));
+  CHECK(value == quadratic_at({1, 2, 3}));
   // Too few for a quadratic polynomial, enough for a linear one.
   CHECK(fit_of(random_points(7, 8), {0.5, 0.5, 0.5}, quadratic, value) == Fit{1, 3});
   // A curved wall: in the tangent plane, rather than by lower order.

@@ -17,7 +17,7 @@ using tess::test::overlapping_pairs, tess::test::TetPair, tess::test::view;
 
 namespace {
 
-const Corners unit{Point{0, 0, 0}, Point{1, 0, 0}, Point{0, 1, 0}, Point{0, 0, 1}};
+const Corners corner_tet{Point{0, 0, 0}, Point{1, 0, 0}, Point{0, 1, 0}, Point{0, 0, 1}};
 
 double volume_of(const Corners& c) {
   TetMesh mesh{{}, {c.begin(), c.end()}, {{0, 1, 2, 3}}};
@@ -57,37 +57,37 @@ double total(const Matrix4& m) {
 }  // namespace
 
 TEST_CASE("overlaps of simple pairs have the volumes of closed forms", "[m2m][supermesh]") {
-  CHECK(overlap_volume(unit, unit) == 1.0 / 6);
+  CHECK(overlap_volume(corner_tet, corner_tet) == 1.0 / 6);
   // A smaller copy at the corner, inside, and shifted by s along x: a copy of edge 1 - s.
-  CHECK(overlap_volume(unit, moved(unit, 0.5, {})) == Approx(1.0 / 48).epsilon(1e-15));
-  CHECK(overlap_volume(unit, moved(unit, 0.25, {0.1, 0.1, 0.1})) ==
+  CHECK(overlap_volume(corner_tet, moved(corner_tet, 0.5, {})) == Approx(1.0 / 48).epsilon(1e-15));
+  CHECK(overlap_volume(corner_tet, moved(corner_tet, 0.25, {0.1, 0.1, 0.1})) ==
         Approx(1.0 / 384).epsilon(1e-15));
   for (const double s : {1e-12, 1e-6, 0.1, 0.5, 0.9, 0.999}) {
     const double edge = 1 - s;
-    CHECK(overlap_volume(unit, moved(unit, 1, {s, 0, 0})) ==
+    CHECK(overlap_volume(corner_tet, moved(corner_tet, 1, {s, 0, 0})) ==
           Approx(edge * edge * edge / 6).epsilon(1e-13));
   }
   // The tetrahedron and its image in the point (1/4, 1/4, 1/4): opposite faces of an octahedron in
   // a regular pair; here the volume by inclusion and exclusion of four corners of edge 1/2.
-  const Corners image = moved(unit, -1, {0.5, 0.5, 0.5});
+  const Corners image = moved(corner_tet, -1, {0.5, 0.5, 0.5});
   // Both hold x, y, z >= 0, x, y, z <= 1/2, and x + y + z between 1/2 and 1.
-  CHECK(overlap_volume(unit, image) == Approx(1.0 / 8 - 1.0 / 48 - 1.0 / 48).epsilon(1e-14));
+  CHECK(overlap_volume(corner_tet, image) == Approx(1.0 / 8 - 1.0 / 48 - 1.0 / 48).epsilon(1e-14));
 }
 
 TEST_CASE("tetrahedra that only touch have no volume in common", "[m2m][supermesh]") {
-  CHECK(overlap_volume(unit, moved(unit, 1, {1, 0, 0})) == 0);   // a vertex
-  CHECK(overlap_volume(unit, moved(unit, -1, {})) == 0);         // a vertex
-  CHECK(overlap_volume(unit, moved(unit, -1, {1, 0, 0})) == 0);  // an edge
-  Corners mirror = unit;
+  CHECK(overlap_volume(corner_tet, moved(corner_tet, 1, {1, 0, 0})) == 0);   // a vertex
+  CHECK(overlap_volume(corner_tet, moved(corner_tet, -1, {})) == 0);         // a vertex
+  CHECK(overlap_volume(corner_tet, moved(corner_tet, -1, {1, 0, 0})) == 0);  // an edge
+  Corners mirror = corner_tet;
   mirror[3][2] = -1;
-  CHECK(overlap_volume(unit, mirror) == 0);  // a face
-  CHECK(overlap_volume(unit, moved(unit, 1, {5, 5, 5})) == 0);
-  Corners flat = unit;
+  CHECK(overlap_volume(corner_tet, mirror) == 0);  // a face
+  CHECK(overlap_volume(corner_tet, moved(corner_tet, 1, {5, 5, 5})) == 0);
+  Corners flat = corner_tet;
   flat[3] = {0.3, 0.3, 0};
-  CHECK(overlap_volume(unit, flat) == 0);
-  CHECK(overlap_volume(flat, unit) == 0);
+  CHECK(overlap_volume(corner_tet, flat) == 0);
+  CHECK(overlap_volume(flat, corner_tet) == 0);
   CHECK(overlap_volume(flat, flat) == 0);
-  const PairMoments none = pair_moments(unit, mirror);
+  const PairMoments none = pair_moments(corner_tet, mirror);
   CHECK(none.volume == 0);
   CHECK(total(none.mixed) == 0);
 }
@@ -208,7 +208,7 @@ TEST_CASE("moments integrate products of linear functions exactly", "[m2m][super
   RandomTets random(9);
   const double far = 0.5854101966249685, near = 0.1381966011250105;
   for (int i = 0; i < 100; ++i) {
-    const Corners large = moved(unit, 8, {-1.5, -1.5, -1.5}), small = random.next();
+    const Corners large = moved(corner_tet, 8, {-1.5, -1.5, -1.5}), small = random.next();
     if (volume_of(small) < 1e-3) continue;  // the points of the rule are rounded
     for (const bool swap : {false, true}) {
       const Corners &source = swap ? small : large, &target = swap ? large : small;
