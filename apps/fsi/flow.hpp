@@ -1,6 +1,10 @@
-// A piece of the fluid's wall. Its mesh is another one than the panel's. The displacement that comes
-// from there is that at the end of a step; the acceleration, and with it the pressure, follows by
-// Newmark's average acceleration.
+// A piece of the fluid's wall. Its mesh is another one than the panel's. The displacement d that comes
+// from there is that at the end of a step. The mean of the velocities at its start and at its end is
+// (d - d₀) / Δt, and the force F, which is the same during the step, is what changes them:
+//
+//     F = - m_a (v - v₀) / Δt,   so that   F (d - d₀) = - m_a (v² - v₀²) / 2:
+//
+// what the panel works is what the fluid gains, and the codes together are as stable as each alone.
 #pragma once
 
 #include "apps/fsi/problem.hpp"
@@ -20,7 +24,7 @@ class Flow : public tess::Chare<Flow, tess::Index1>, public tess::m2m::Piece<Flo
   Flow() = default;
   explicit Flow(const Problem& problem);
 
-  /// The pressure of the displacement that has come, as forces on the points.
+  /// The force that follows from the displacement that has come.
   void press();
   /// A step ends: what was reached is the start of the next one.
   void accept();
@@ -36,15 +40,18 @@ class Flow : public tess::Chare<Flow, tess::Index1>, public tess::m2m::Piece<Flo
 
   template <class Ar>
   void serialize(Ar& ar) {
-    ar(couplings, problem_, strip_, d_, a_, d_start_, v_start_, a_start_, force_);
+    ar(couplings, problem_, strip_, d_, d_start_, v_start_, force_);
   }
 
  private:
+  /// At the end of the step.
+  [[nodiscard]] double velocity(std::size_t point) const;
+
   Problem problem_;
   Strip strip_;
-  std::vector<double> d_, a_;                        // per point owned
-  std::vector<double> d_start_, v_start_, a_start_;  // where the step began
-  std::vector<double> force_;
+  std::vector<double> d_;                  // per point owned
+  std::vector<double> d_start_, v_start_;  // where the step began
+  std::vector<double> force_;              // per point
 };
 
 }  // namespace fsi

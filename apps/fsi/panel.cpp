@@ -26,7 +26,6 @@ Panel::Panel(const Problem& problem)
 void Panel::begin() {
   w_start_ = w_;
   v_start_ = v_;
-  load_start_ = load_;
   last_residual_.clear();
   for (std::size_t i = 0; i < w_.size(); ++i) guess_[i] = w_[i] + problem_.dt() * v_[i];
   send_rows(-1);
@@ -72,11 +71,9 @@ tess::Task Panel::move() {
       Row row = co_await rows_.take(k);
       (row.is_before ? before_ : after_) = std::move(row.values);
     }
-    // The force grows evenly from the one at the start to the present guess of the one at the end.
-    const double part = double(k) / n;
     for (std::size_t i = 0; i < w_.size(); ++i) {
       if (strip_.is_held(i)) continue;
-      const double force = pull(i) + (1 - part) * load_start_[i] + part * load_[i];
+      const double force = pull(i) + load_[i];
       const double kick = 0.5 * step * force / (problem_.mass * strip_.area(i));
       v_[i] += k == 0 || k == n ? kick : 2 * kick;
     }

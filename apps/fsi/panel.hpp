@@ -23,7 +23,7 @@ class Panel : public tess::Chare<Panel, tess::Index1>, public tess::m2m::Piece<P
 
   /// A step begins: what was reached is its start. The guess is how the panel goes on by itself.
   void begin();
-  /// Moves from the start of the step to its end, under the force that `load` has become.
+  /// Moves from the start of the step to its end, under the force of this step.
   tess::Task move();
   /// The residual, by which the panel's move differs from the guess that it followed from.
   void compare(tess::Callback<Residual> result);
@@ -50,7 +50,7 @@ class Panel : public tess::Chare<Panel, tess::Index1>, public tess::m2m::Piece<P
   template <class Ar>
   void serialize(Ar& ar) {
     ar(couplings, problem_, strip_, rows_, before_, after_, w_, v_, w_start_, v_start_, load_,
-       load_start_, guess_, residual_, last_residual_);
+       guess_, residual_, last_residual_);
   }
 
  private:
@@ -64,7 +64,7 @@ class Panel : public tess::Chare<Panel, tess::Index1>, public tess::m2m::Piece<P
   std::vector<double> before_, after_;     // rows beside the piece
   std::vector<double> w_, v_;              // per point owned
   std::vector<double> w_start_, v_start_;  // where the step began
-  std::vector<double> load_, load_start_;  // forces, in units of mass × length / time²
+  std::vector<double> load_;               // forces, in units of mass × length / time²
   std::vector<double> guess_;              // per point
   std::vector<double> residual_, last_residual_;
 };

@@ -21,7 +21,6 @@ class Codes {
     co_await moves_.search();
     forces_ = moves_.transposed();
     co_await forces_.search();
-    co_await forces_.apply<&Flow::force, &Panel::load>();
   }
   tess::Task end() {
     co_await tess::epoch([&] {
