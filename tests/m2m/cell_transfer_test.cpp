@@ -278,7 +278,7 @@ TEST_CASE("couplings refuse kinds and centrings that do not go together by name"
     for (const Centring source : {Centring::cells, Centring::corners})
       CHECK_THAT(refusal(kind, source, Centring::nodes),
                  Contains(std::string("kind ") + name_of(kind) + " takes values at nodes") &&
-                     Contains("choose linear or a conservative kind"));
+                     Contains("choose linear, projection or a conservative kind"));
   for (const TransferKind kind : {TransferKind::linear, TransferKind::limited})
     CHECK_THAT(refusal(kind, Centring::nodes, Centring::cells),
                Contains(std::string("kind ") + name_of(kind) + " gives values at points") &&

@@ -176,20 +176,20 @@ TEST_CASE("neighbours that determine less fall back", "[m2m][fits]") {
   std::vector<Point> plane = random_points(60, 3);
   for (Point& p : plane) p[2] = p[0] + 2 * p[1] - 1;
   const Point foot{0.5, 0.4, 0.3}, beside{0.5 + 0.02, 0.4 + 0.04, 0.3 - 0.02};
-  CHECK(fit_of(plane, foot, quadratic, value) == Fit{2, 2});
+  CHECK(fit_of(plane, foot, quadratic_at, value) == Fit{2, 2});
   CHECK(value == Approx(quadratic_at(foot)).margin(1e-10));
-  CHECK(fit_of(plane, beside, quadratic, value) == Fit{2, 2});
+  CHECK(fit_of(plane, beside, quadratic_at, value) == Fit{2, 2});
   CHECK(value == Approx(quadratic_at(foot)).margin(1e-10));
   std::vector<Point> line = random_points(60, 4);
   for (Point& p : line) p = {p[0], 2 * p[0], 1 - p[0]};
-  CHECK(fit_of(line, {0.5, 1, 0.5}, quadratic, value) == Fit{2, 1});
+  CHECK(fit_of(line, {0.5, 1, 0.5}, quadratic_at, value) == Fit{2, 1});
   CHECK(value == Approx(quadratic_at({0.5, 1, 0.5})).margin(1e-10));
-  CHECK(fit_of(std::vector<Point>(40, {1, 2, 3}), {1, 2, 3.5}, quadratic, value) == Fit{0, 0});
+  CHECK(fit_of(std::vector<Point>(40, {1, 2, 3}), {1, 2, 3.5}, quadratic_at, value) == Fit{0, 0});
   CHECK(value == Approx(quadratic_at({1, 2, 3})));
-  CHECK(fit_of({{1, 2, 3}}, {1, 2, 3}, quadratic, value) == Fit{0, 0});
+  CHECK(fit_of({{1, 2, 3}}, {1, 2, 3}, quadratic_at, value) == Fit{0, 0});
   CHECK(value == quadratic_at({1, 2, 3}));
   // Too few for a quadratic polynomial, enough for a linear one.
-  CHECK(fit_of(random_points(7, 8), {0.5, 0.5, 0.5}, quadratic, value) == Fit{1, 3});
+  CHECK(fit_of(random_points(7, 8), {0.5, 0.5, 0.5}, quadratic_at, value) == Fit{1, 3});
   // A curved wall: in the tangent plane, rather than by lower order.
   std::vector<Point> cap = random_points(4000, 9);
   for (Point& p : cap) p[2] = -0.05 * ((p[0] - 0.5) * (p[0] - 0.5) + (p[1] - 0.5) * (p[1] - 0.5));
