@@ -15,6 +15,7 @@
 #include "runtime/checkpoint.hpp"
 
 #include <cmath>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -29,7 +30,6 @@ class Zone : public Chare<Zone>, public Piece<Zone> {
   void load(const MeshPart& part) {
     part_ = part;
     taken_.assign(static_cast<std::size_t>(part.n_owned), -7);
-    late_ = taken_;
     step(0);
   }
   void step(int number) {
@@ -40,7 +40,12 @@ class Zone : public Chare<Zone>, public Piece<Zone> {
   [[nodiscard]] MeshView mesh_view() const { return view_of(part_); }
   [[nodiscard]] std::span<const double> given() const { return given_; }
   [[nodiscard]] std::span<double> taken() { return taken_; }
-  [[nodiscard]] std::span<double> late() { return late_; }
+  /// Rounds of several couplings end in any order, so each has a place of its own.
+  [[nodiscard]] std::span<double> late(CouplingId id) {
+    std::vector<double>& values = late_[id];
+    values.resize(taken_.size());
+    return values;
+  }
   void mirror() {
     for (Point& p : part_.points) p = {-p[0], -p[1], -p[2]};
   }
@@ -48,7 +53,7 @@ class Zone : public Chare<Zone>, public Piece<Zone> {
   void give(CouplingId id) { m2m_give<Zone, &Zone::given, &Zone::late>(id); }
   void gather(Callback<std::vector<double>> target) {
     std::vector<double> all = taken_;
-    all.insert(all.end(), late_.begin(), late_.end());
+    for (const auto& [id, values] : late_) all.insert(all.end(), values.begin(), values.end());
     contribute(in_order(concatenate), std::move(all), std::move(target));
   }
   template <class Ar>
@@ -58,7 +63,8 @@ class Zone : public Chare<Zone>, public Piece<Zone> {
 
  private:
   MeshPart part_;
-  std::vector<double> given_, taken_, late_;
+  std::vector<double> given_, taken_;
+  std::map<CouplingId, std::vector<double>> late_;
 };
 
 struct State {
@@ -87,7 +93,8 @@ Task make(State& state) {
   for (const TransferKind kind : all_transfer_kinds) {
     CouplingOptions options{.policy = UseValue{42}, .kind = kind};
     if (kind == TransferKind::linear) options.policy = Nearest{};
-    if (!is_conservative(kind)) options.tolerance = 0.1;
+    if (!is_conservative(kind) && kind != TransferKind::moving_least_squares)
+      options.tolerance = 0.1;
     state.couplings.emplace_back(state.source, state.target, options);
     co_await state.couplings.back().search();
   }
