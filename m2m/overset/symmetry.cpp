@@ -56,7 +56,10 @@ std::string text_of(const SymmetryPlane& plane) {
 
 std::string text_of(std::span<const SymmetryPlane> planes) {
   std::string out;
-  for (const SymmetryPlane& plane : planes) out += (out.empty() ? "" : ",") + text_of(plane);
+  for (const SymmetryPlane& plane : planes) {
+    if (!out.empty()) out += ',';
+    out += text_of(plane);
+  }
   return out;
 }
 
