@@ -10,6 +10,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -151,6 +152,13 @@ MeshCensus validate(const TetMesh& mesh);
 /// True if the cell repeats its last vertex as the dimension asks: (a, b, c, c) or (a, b, b, b).
 [[nodiscard]] constexpr bool has_dimension(const Tet& cell, std::int32_t dimension) noexcept {
   return dimension == 3 || (cell[3] == cell[2] && (dimension == 2 || cell[2] == cell[1]));
+}
+
+/// The four points of a cell.
+[[nodiscard]] inline std::array<Point, 4> corners_of(std::span<const Point> points,
+                                                     const Tet& tet) {
+  const auto at = [&](std::size_t corner) { return points[static_cast<std::size_t>(tet[corner])]; };
+  return {at(0), at(1), at(2), at(3)};
 }
 
 /// The mean of the corners.

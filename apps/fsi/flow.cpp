@@ -29,12 +29,7 @@ void Flow::accept() {
 }
 
 void Flow::balance(tess::Callback<Balance> result) {
-  Balance mine;
-  for (std::size_t i = 0; i < d_.size(); ++i) {
-    const Point& p = strip_.points()[i];
-    mine.add(p[0], p[1], force_[i], d_[i]);
-  }
-  contribute(JoinBalances{}, mine, std::move(result));
+  contribute(JoinBalances{}, balance_of(strip_, force_, d_), std::move(result));
 }
 
 void Flow::measure(tess::Callback<Measured> result) {

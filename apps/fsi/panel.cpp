@@ -17,7 +17,6 @@ Panel::Panel(const Problem& problem)
   for (const Point& p : strip_.points()) guess_.push_back(problem_.exact(p, 0));
   w_.assign(guess_.begin(), guess_.begin() + static_cast<std::ptrdiff_t>(strip_.n_owned()));
   v_.resize(w_.size());
-  residual_.resize(w_.size());
   load_.resize(w_.size());
   w_start_ = w_;
   v_start_ = v_;
@@ -26,7 +25,7 @@ Panel::Panel(const Problem& problem)
 void Panel::begin() {
   w_start_ = w_;
   v_start_ = v_;
-  last_residual_.clear();
+  residual_.clear();
   for (std::size_t i = 0; i < w_.size(); ++i) guess_[i] = w_[i] + problem_.dt() * v_[i];
   send_rows(-1);
 }
@@ -85,17 +84,17 @@ tess::Task Panel::move() {
 
 void Panel::compare(tess::Callback<Residual> result) {
   Residual mine;
+  const bool is_first = residual_.empty();
+  residual_.resize(w_.size());
   for (std::size_t i = 0; i < w_.size(); ++i) {
-    const double r = w_[i] - guess_[i];
-    residual_[i] = r;
+    const double r = w_[i] - guess_[i], last = std::exchange(residual_[i], r);
     kit::worsen(mine.largest, std::abs(r));
     mine.sums[0].add(r * r);
-    if (last_residual_.empty()) continue;
-    const double change = r - last_residual_[i];
-    mine.sums[1].add(last_residual_[i] * change);
+    if (is_first) continue;
+    const double change = r - last;
+    mine.sums[1].add(last * change);
     mine.sums[2].add(change * change);
   }
-  last_residual_ = residual_;
   contribute(JoinResiduals{}, mine, std::move(result));
 }
 
@@ -105,12 +104,7 @@ void Panel::correct(double factor) {
 }
 
 void Panel::balance(tess::Callback<Balance> result) {
-  Balance mine;
-  for (std::size_t i = 0; i < w_.size(); ++i) {
-    const Point& p = strip_.points()[i];
-    mine.add(p[0], p[1], load_[i], guess_[i]);
-  }
-  contribute(JoinBalances{}, mine, std::move(result));
+  contribute(JoinBalances{}, balance_of(strip_, load_, guess_), std::move(result));
 }
 
 void Panel::measure(double time, tess::Callback<Measured> result) {

@@ -50,7 +50,7 @@ class Panel : public tess::Chare<Panel, tess::Index1>, public tess::m2m::Piece<P
   template <class Ar>
   void serialize(Ar& ar) {
     ar(couplings, problem_, strip_, rows_, before_, after_, w_, v_, w_start_, v_start_, load_,
-       guess_, residual_, last_residual_);
+       guess_, residual_);
   }
 
  private:
@@ -66,7 +66,7 @@ class Panel : public tess::Chare<Panel, tess::Index1>, public tess::m2m::Piece<P
   std::vector<double> w_start_, v_start_;  // where the step began
   std::vector<double> load_;               // forces, in units of mass × length / time²
   std::vector<double> guess_;              // per point
-  std::vector<double> residual_, last_residual_;
+  std::vector<double> residual_;           // per point owned; empty before the first of a step
 };
 
 }  // namespace fsi

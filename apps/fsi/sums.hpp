@@ -2,16 +2,19 @@
 // the meshes are cut.
 #pragma once
 
+#include "apps/fsi/strip.hpp"
 #include "apps/kit/worst.hpp"
 #include "runtime/core/exact_sum.hpp"
 #include "runtime/core/hash.hpp"
 
 #include <array>
+#include <cmath>
 #include <cstdint>
+#include <span>
 
 namespace fsi {
 
-/// Of residuals r, and the last ones s: r·r, s·(r - s), (r - s)·(r - s); and the largest of r.
+/// Holds, for residuals r and the last ones s, r·r, s·(r - s), (r - s)·(r - s), and the largest r.
 struct Residual {
   std::array<tess::ExactSum, 3> sums{};
   double largest = 0;
@@ -24,16 +27,22 @@ struct JoinResiduals {
   }
 };
 
-/// Of forces f at places x with displacements d: Σ f, Σ x f, Σ y f, Σ f d, Σ |f|, Σ |f d|.
+/// Holds, for forces f at places x with displacements d, Σ f, Σ x f, Σ y f, Σ f d, Σ |f|, Σ |f d|.
 struct Balance {
   std::array<tess::ExactSum, 6> sums{};
-  void add(double x, double y, double force, double displacement) {
-    const double work = force * displacement;
-    const std::array<double, 6> terms{force, x * force,       y * force,
-                                      work,  std::abs(force), std::abs(work)};
-    for (std::size_t i = 0; i < terms.size(); ++i) sums[i].add(terms[i]);
-  }
 };
+/// Sums over the points that a piece owns.
+inline Balance balance_of(const Strip& strip, std::span<const double> forces,
+                          std::span<const double> displacements) {
+  Balance mine;
+  for (std::size_t i = 0; i < strip.n_owned(); ++i) {
+    const Point& p = strip.points()[i];
+    const double f = forces[i], work = f * displacements[i];
+    const std::array terms{f, p[0] * f, p[1] * f, work, std::abs(f), std::abs(work)};
+    for (std::size_t k = 0; k < terms.size(); ++k) mine.sums[k].add(terms[k]);
+  }
+  return mine;
+}
 struct JoinBalances {
   Balance operator()(Balance a, const Balance& b) const {
     for (std::size_t i = 0; i < a.sums.size(); ++i) a.sums[i].add(b.sums[i]);

@@ -36,7 +36,7 @@ Surface surface_from_file(const std::string& path, std::string& remarks) {
   return out;
 }
 
-/// Of all meshes.
+/// Holds all meshes.
 Aabb joint_box(const Problem& problem) {
   Aabb box = bounds(problem.meshes[0]);
   for (const TetMesh& mesh : problem.meshes) box = tess::collide::merged(box, bounds(mesh));

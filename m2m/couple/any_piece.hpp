@@ -106,7 +106,7 @@ class AnyPiece {
   void m2m_give_rows(CouplingId id, GroupProxy<RowBook> book);
   void m2m_take_rows(GivenRows given);
 
-  // Of scaled transfers (scaled.hpp).
+  // Scaled transfers (scaled.hpp) call these.
   void m2m_integrate(CouplingId id, GroupProxy<IntegralBook> book, detail::Giver give);
   void m2m_integrate_taken(CouplingId id, GroupProxy<IntegralBook> book, detail::Taker take);
   void m2m_scale(CouplingId id, detail::Taker take, const std::vector<double>& factors);

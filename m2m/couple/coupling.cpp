@@ -257,7 +257,7 @@ Task AnyCoupling::collide_covers() {
       {Callback<collide::Hits>(detail::hits_kind, state.target_bytes()), target_model});
 }
 
-/// Of a transposed coupling: weights come to the target pieces, and then to the owners of ghosts.
+/// Brings the weights of a transposed coupling to the target pieces, then to the owners of ghosts.
 Task AnyCoupling::pass_rows() const {
   const CouplingSetup& setup = state_->setup;
   co_await epoch([&] { setup.source.broadcast<&AnyPiece::m2m_name_points>(setup.id); });

@@ -28,8 +28,8 @@ struct JoinIntegrals {
   }
 };
 
-/// Of one piece. `values`: a row per point, or per point that the piece owns; these are integrated
-/// by the cells around them.
+/// Integrates over one piece. `values`: a row per point, or per point that the piece owns; these are
+/// integrated by the cells around them.
 [[nodiscard]] IntegralPage integrals_of(const MeshView& mesh, std::span<const double> values);
 
 class IntegralBook : public Group<IntegralBook> {

@@ -5,7 +5,6 @@
 #include "runtime/core/error.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace tess::m2m {
@@ -44,10 +43,7 @@ IntegralPage integrals_of(const MeshView& mesh, std::span<const double> values) 
   const std::size_t n_own = mesh.own_tets().size();
   const std::size_t n_corners = static_cast<std::size_t>(mesh.dimension) + 1;
   for (std::size_t t = 0; t < (has_all ? n_own : mesh.tets.size()); ++t) {
-    std::array<Point, 4> corners;
-    for (std::size_t k = 0; k < 4; ++k)
-      corners[k] = mesh.points[static_cast<std::size_t>(mesh.tets[t][k])];
-    const double size = measure(corners, mesh.dimension);
+    const double size = measure(corners_of(mesh.points, mesh.tets[t]), mesh.dimension);
     if (t < n_own) page.cells += size;
     const double part = size / static_cast<double>(n_corners);
     for (std::size_t k = 0; k < n_corners; ++k) {

@@ -28,7 +28,7 @@ class TargetSide {
 
   /// Forgets the last search, and returns boxes around what gets values.
   [[nodiscard]] std::vector<Aabb> start_search(const MeshView& mesh);
-  /// The same for a transposed coupling. `rows`: of the donors that the piece holds, per piece that
+  /// Starts that of a transposed coupling. `rows`: of the donors that the piece holds, per piece that
   /// they give values.
   void start_search(Addressed<Rows<double>> rows);
   /// What the piece reports of its points if there is a directory; `me`: the piece.

@@ -13,10 +13,7 @@ Aabb bounds(const TetMesh& mesh) {
 }
 
 double signed_volume(const TetMesh& mesh, std::size_t tet) {
-  std::array<Point, 4> corners;
-  for (std::size_t k = 0; k < 4; ++k)
-    corners[k] = mesh.points[static_cast<std::size_t>(mesh.tets[tet][k])];
-  return signed_volume(corners);
+  return signed_volume(corners_of(mesh.points, mesh.tets[tet]));
 }
 
 // Each coordinate is read alone: a copy of the corners in vectors waits for the stores that have

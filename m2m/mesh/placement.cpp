@@ -253,11 +253,7 @@ MeshSurvey survey(const TetMesh& mesh) {
   out.n_points = static_cast<GlobalId>(mesh.n_points());
   out.n_tets = static_cast<GlobalId>(mesh.n_tets());
   MeshExtent extent;
-  for (const Tet& tet : mesh.tets) {
-    std::array<Point, 4> corners;
-    for (std::size_t k = 0; k < 4; ++k) corners[k] = mesh.points[static_cast<std::size_t>(tet[k])];
-    extent.add(corners, mesh.dimension);
-  }
+  for (const Tet& tet : mesh.tets) extent.add(corners_of(mesh.points, tet), mesh.dimension);
   out.longest_edge = std::sqrt(extent.longest_squared);
   out.volume = extent.volume.total();
   out.skipped = skipped_text(mesh);

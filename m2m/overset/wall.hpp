@@ -51,7 +51,7 @@ class Wall {
   /// a mesh needs no more of a large wall.
   [[nodiscard]] Wall seen_from(const Aabb& box) const;
 
-  /// Of the triangles, with those that close it.
+  /// Holds the triangles, and those that close the wall.
   [[nodiscard]] Aabb box() const;
   [[nodiscard]] std::size_t n_triangles() const { return triangles_.size(); }
   [[nodiscard]] const Rim& rim() const { return rim_; }

@@ -20,7 +20,7 @@ namespace tess::m2m {
 /// A side as a cell: a triangle of a tetrahedron faces away from it, also if that is inverted.
 [[nodiscard]] Tet outward(const TetMesh& mesh, const Side& side);
 
-/// The same for all cells of this dimension that have the same corners.
+/// Gives cells of this dimension the same key if they have the same corners.
 [[nodiscard]] Tet key_of(Tet cell, std::int32_t dimension);
 
 [[nodiscard]] inline bool names_corner_twice(const Tet& cell, std::int32_t dimension) {

@@ -36,13 +36,6 @@ void validate_groups(const TetMesh& mesh) {
   }
 }
 
-std::array<Point, 4> corners_at(const TetMesh& mesh, std::size_t tet) {
-  std::array<Point, 4> corners;
-  for (std::size_t k = 0; k < 4; ++k)
-    corners[k] = mesh.points[static_cast<std::size_t>(mesh.tets[tet][k])];
-  return corners;
-}
-
 /// Fails for two equal ids of a piece. They usually ascend, which one pass shows.
 void require_unique(std::span<const GlobalId> ids, const char* what, const char* list) {
   if (std::adjacent_find(ids.begin(), ids.end(), std::greater_equal<>()) == ids.end()) return;
@@ -67,7 +60,7 @@ MeshCensus validate(const TetMesh& mesh) {
   findings.add_corners(0, mesh.tets, n);
   findings.refuse_bad_ids(mesh.name, n);
   for (std::size_t t = 0; t < mesh.n_tets(); ++t)
-    findings.add_shape(static_cast<GlobalId>(t), corners_at(mesh, t));
+    findings.add_shape(static_cast<GlobalId>(t), corners_of(mesh.points, mesh.tets[t]));
   findings.refuse_bad_shapes(mesh.name, mesh.n_tets());
   return {findings.n_flat, findings.n_inverted, n_unused(mesh), findings.bounds};
 }

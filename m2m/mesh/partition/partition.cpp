@@ -67,12 +67,8 @@ void refuse_bad_ids(const TetMesh& mesh) {
 std::vector<std::int32_t> parts_on_curve(const TetMesh& mesh, std::int32_t n_parts) {
   const HilbertCube cube(bounds(mesh));
   std::vector<std::uint64_t> cells(mesh.n_tets());
-  for (std::size_t t = 0; t < mesh.n_tets(); ++t) {
-    std::array<Point, 4> corners;
-    for (std::size_t k = 0; k < 4; ++k)
-      corners[k] = mesh.points[static_cast<std::size_t>(mesh.tets[t][k])];
-    cells[t] = cube.cell(mean_of_corners(corners));
-  }
+  for (std::size_t t = 0; t < mesh.n_tets(); ++t)
+    cells[t] = cube.cell(mean_of_corners(corners_of(mesh.points, mesh.tets[t])));
   CurveCut cut(mesh.n_tets(), n_parts);
   while (!cut.is_done()) cut.refine(cut.counts(cells));
   return cut.parts(cells);

@@ -237,7 +237,7 @@ class NearTets {
   }
 
  private:
-  /// Of all tetrahedra in a box of the cover.
+  /// Makes those of all tetrahedra in a box of the cover.
   void make(std::uint32_t b) {
     made_at_[b].first = static_cast<std::uint32_t>(made_.size());
     for (const std::uint32_t s : cover_.members_of(b)) {

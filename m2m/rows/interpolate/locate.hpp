@@ -94,13 +94,6 @@ void locate_pairs(std::span<const Point> points, std::span<const Tet> tets,
   return out;
 }
 
-/// The four points of a tetrahedron.
-[[nodiscard]] inline std::array<Point, 4> corners_of(std::span<const Point> points,
-                                                     const Tet& tet) {
-  const auto at = [&](std::size_t corner) { return points[static_cast<std::size_t>(tet[corner])]; };
-  return {at(0), at(1), at(2), at(3)};
-}
-
 /// The product, and 0 for a weight of 0 and a value that is not finite.
 [[nodiscard]] inline double weighted(double weight, double value) {
   const double product = weight * value;

@@ -23,14 +23,14 @@ namespace tess::m2m {
 
 class NearestCells {
  public:
-  /// Of the piece's own cells. O(n log n).
+  /// Builds the tree over the piece's own cells. O(n log n).
   explicit NearestCells(const MeshView& mesh);
 
   /// The nearest cell of each point that has one within its reach (inclusive). `mesh`: that of the
   /// constructor. Adds to `n_tested` the pairs of a cell and a point that were compared.
   [[nodiscard]] BestDonors within(const MeshView& mesh, std::span<const Point> points,
                                   std::span<const double> reaches, std::uint64_t& n_tested) const;
-  /// The same with one reach for all points, and for each cell at least its snap_reach().
+  /// Finds them with one reach for all points, and for each cell at least its snap_reach().
   [[nodiscard]] BestDonors snapped(const MeshView& mesh, std::span<const Point> points,
                                    double tolerance, std::uint64_t& n_tested) const;
 

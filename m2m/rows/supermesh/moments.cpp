@@ -12,7 +12,7 @@ namespace {
 /// If six times the volume of the cutting tetrahedron exceeds this multiple of the box around both,
 /// the rounding errors of its weights are below 1e-10 (as in locate.cpp).
 constexpr double flat_limit = 4 * 6 * orientation_bound * 1e10;
-/// The same for heights(), as a multiple of their sure_height(): errors of weights are below 1e-14.
+/// If heights() exceed this multiple of their sure_height(), errors of weights are below 1e-14.
 constexpr double flat_height = 0x1p37;
 
 /// Heights above such a tetrahedron may be mostly rounding; only their signs are exact.

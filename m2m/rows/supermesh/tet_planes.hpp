@@ -14,7 +14,7 @@ namespace tess::m2m {
 using Corners = std::array<Point, 4>;
 /// A number per corner or face of a tetrahedron.
 using Four = simd::Vector<double, 4>;
-/// Of the corners of one tetrahedron above the faces of another one: heights[face][corner].
+/// Says how high the corners of a tetrahedron lie above the faces of another: heights[face][corner].
 using Heights = std::array<Four, 4>;
 
 struct TetPlanes {
