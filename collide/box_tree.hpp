@@ -37,6 +37,10 @@ class BoxTree {
 
   [[nodiscard]] std::span<Node> nodes() { return nodes_; }
   [[nodiscard]] std::span<const Node> nodes() const { return nodes_; }
+  /// The position of a node in nodes().
+  [[nodiscard]] std::uint32_t number_of(const Node& node) const {
+    return static_cast<std::uint32_t>(&node - nodes_.data());
+  }
   /// Number of objects, and of places.
   [[nodiscard]] std::size_t size() const { return objects_.size(); }
   /// The object at a place.
@@ -52,9 +56,11 @@ class BoxTree {
   void descend(const Visit& visit) const;
 
   /// Calls visit(leaf) for leaves with key(box) <= limit, those with small keys first. A visit may
-  /// reduce the limit. The key of a box is not greater than that of a box inside.
+  /// reduce the limit. The key of a box is not greater than that of a box inside. `from`: the node
+  /// whose leaves are meant; the root is 0.
   template <class Key, class Visit>
-  void descend_near(const Key& key, const double& limit, const Visit& visit) const;
+  void descend_near(const Key& key, const double& limit, const Visit& visit,
+                    std::uint32_t from = 0) const;
 
  private:
   static constexpr std::uint32_t leaf_size = 4;
@@ -134,7 +140,8 @@ void BoxTree<Box, D>::descend(const Visit& visit) const {
 
 template <class Box, std::size_t D>
 template <class Key, class Visit>
-void BoxTree<Box, D>::descend_near(const Key& key, const double& limit, const Visit& visit) const {
+void BoxTree<Box, D>::descend_near(const Key& key, const double& limit, const Visit& visit,
+                                   std::uint32_t from) const {
   if (nodes_.empty()) return;
   struct Pending {
     std::uint32_t node;
@@ -142,7 +149,7 @@ void BoxTree<Box, D>::descend_near(const Key& key, const double& limit, const Vi
   };
   std::array<Pending, max_depth> stack;
   std::size_t height = 0;
-  stack[height++] = {0, key(nodes_[0].box)};
+  stack[height++] = {from, key(nodes_[from].box)};
   while (height > 0) {
     const Pending top = stack[--height];
     if (top.key > limit) continue;

@@ -8,6 +8,7 @@
 #include "collide/box.hpp"
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -137,10 +138,22 @@ MeshCensus validate(const TetMesh& mesh);
 /// The volume with its sign, from edges relative to the first vertex. (Absolute coordinates would
 /// cancel far from the origin.)
 [[nodiscard]] double signed_volume(const TetMesh& mesh, std::size_t tet);
-[[nodiscard]] double signed_volume(const std::array<Point, 4>& corners);
+// Each coordinate is read alone: a copy of the corners in vectors waits for the stores that have
+// just written them.
+[[nodiscard]] inline double signed_volume(const std::array<Point, 4>& corners) {
+  const double x = corners[0][0], y = corners[0][1], z = corners[0][2];
+  const double ax = corners[1][0] - x, ay = corners[1][1] - y, az = corners[1][2] - z;
+  const double bx = corners[2][0] - x, by = corners[2][1] - y, bz = corners[2][2] - z;
+  const double cx = corners[3][0] - x, cy = corners[3][1] - y, cz = corners[3][2] - z;
+  return (ax * (by * cz - bz * cy) + ay * (bz * cx - bx * cz) + az * (bx * cy - by * cx)) / 6.0;
+}
+/// The area of a triangle (dimension 2) or the length of an edge (1).
+[[nodiscard]] double area_or_length(const std::array<Point, 4>& corners, std::int32_t dimension);
 /// The size of a cell of this dimension, never negative: the volume of a tetrahedron, the area of a
 /// triangle, or the length of an edge.
-[[nodiscard]] double measure(const std::array<Point, 4>& corners, std::int32_t dimension);
+[[nodiscard]] inline double measure(const std::array<Point, 4>& corners, std::int32_t dimension) {
+  return dimension == 3 ? std::abs(signed_volume(corners)) : area_or_length(corners, dimension);
+}
 
 /// For messages: the cells of this dimension, "tetrahedra", "triangles" or "edges".
 [[nodiscard]] constexpr const char* cells_of(std::int32_t dimension) noexcept {

@@ -16,18 +16,7 @@ double signed_volume(const TetMesh& mesh, std::size_t tet) {
   return signed_volume(corners_of(mesh.points, mesh.tets[tet]));
 }
 
-// Each coordinate is read alone: a copy of the corners in vectors waits for the stores that have
-// just written them.
-double signed_volume(const std::array<Point, 4>& corners) {
-  const double x = corners[0][0], y = corners[0][1], z = corners[0][2];
-  const double ax = corners[1][0] - x, ay = corners[1][1] - y, az = corners[1][2] - z;
-  const double bx = corners[2][0] - x, by = corners[2][1] - y, bz = corners[2][2] - z;
-  const double cx = corners[3][0] - x, cy = corners[3][1] - y, cz = corners[3][2] - z;
-  return (ax * (by * cz - bz * cy) + ay * (bz * cx - bx * cz) + az * (bx * cy - by * cx)) / 6.0;
-}
-
-double measure(const std::array<Point, 4>& corners, std::int32_t dimension) {
-  if (dimension == 3) return std::abs(signed_volume(corners));
+double area_or_length(const std::array<Point, 4>& corners, std::int32_t dimension) {
   const Point along = difference(corners[1], corners[0]);
   if (dimension == 1) return std::hypot(along[0], along[1], along[2]);
   const Point normal = cross(along, difference(corners[2], corners[0]));

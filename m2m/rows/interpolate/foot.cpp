@@ -230,6 +230,21 @@ Foot foot_of(const Point& p, const std::array<Point, 4>& corners, std::int32_t d
   return best;
 }
 
+// Beyond an edge the distance is at least that from the edge's line within the plane. The margins are
+// far above the rounding error of `side`, and its square is a normal number.
+bool is_beyond(const Point& p, const std::array<Point, 4>& c, double squared_distance) {
+  const Point normal = cross(difference(c[1], c[0]), difference(c[2], c[0]));
+  const double area = dot(normal, normal);
+  bool beyond = false;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Point edge = difference(c[(i + 1) % 3], c[i]), way = difference(p, c[i]);
+    const double side = dot(normal, cross(edge, way));
+    const double least = 1.001 * squared_distance + 1e-20 * dot(way, way);
+    beyond |= (side < 0) & (side * side > 1e-280) & (side * side > area * dot(edge, edge) * least);
+  }
+  return beyond;
+}
+
 Location location_of(const Foot& foot, const Point& p, const std::array<Point, 4>& corners,
                      std::int32_t dimension) {
   const int n_corners = std::popcount(foot.feature);

@@ -31,6 +31,11 @@ struct Foot {
 [[nodiscard]] Foot foot_of(const Point& p, const std::array<Point, 4>& corners,
                            std::int32_t dimension);
 
+/// True for a triangle that is farther from `p` than the root of `squared_distance`, as far as its
+/// edges show it at a glance: a search looks at several times as many triangles as it needs.
+[[nodiscard]] bool is_beyond(const Point& p, const std::array<Point, 4>& corners,
+                             double squared_distance);
+
 /// The foot as a location. The status is `inside` in the face of a triangle or between the ends of an
 /// edge, `boundary` at their rims, and `snapped` if the point is not on the cell.
 [[nodiscard]] Location location_of(const Foot& foot, const Point& p,

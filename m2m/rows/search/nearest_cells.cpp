@@ -42,11 +42,14 @@ NearestCells::NearestCells(const MeshView& mesh) {
   tree_ = collide::BoxTree<Aabb, 3>(std::move(centres));
   boxes_.resize(n);
   const auto nodes = tree_.nodes();
+  parents_.resize(nodes.size() / 2);
   for (std::size_t at = nodes.size(); at-- > 0;) {
     auto& node = nodes[at];
     node.box = collide::no_box<double, 3>();
-    if (node.count == 0)
+    if (node.count == 0) {
+      parents_[node.first / 2] = static_cast<std::uint32_t>(at);
       node.box = collide::merged(nodes[node.first].box, nodes[node.first + 1].box);
+    }
     tree_.each_place(node, [&](std::uint32_t place) {
       boxes_[place] = box_of_cell(mesh, tree_.object(place));
       node.box = collide::merged(node.box, boxes_[place]);
@@ -55,13 +58,14 @@ NearestCells::NearestCells(const MeshView& mesh) {
 }
 
 NearestCells::Best NearestCells::find(const MeshView& mesh, const Point& p, Reach reach,
-                                      std::int32_t hint, std::uint64_t& n_tested) const {
+                                      std::uint32_t hint, std::uint64_t& n_tested) const {
   Best best;
   double limit =
       squared_limit(reach.snaps ? std::max(reach.length, most_snap_reach_) : reach.length);
-  const auto offer = [&](std::size_t cell) {
+  const auto offer = [&](std::size_t cell, std::uint32_t leaf) {
     const std::array<Point, 4> corners = corners_of(mesh.points, mesh.tets[cell]);
     ++n_tested;
+    if (mesh.dimension == 2 && is_beyond(p, corners, limit)) return;
     const Foot foot = foot_of(p, corners, mesh.dimension);
     if (!(foot.distance <= reach.length) && !(reach.snaps && foot.distance <= snap_reach(corners)))
       return;
@@ -70,17 +74,22 @@ NearestCells::Best NearestCells::find(const MeshView& mesh, const Point& p, Reac
                               foot.distance == 0 ? Status::boundary : Status::snapped,
                               is_corner ? Place::corner : Place::elsewhere};
     if (!better(candidate, best.candidate)) return;
-    best = {static_cast<std::int32_t>(cell), candidate, foot};
+    best = {static_cast<std::int32_t>(cell), leaf, candidate, foot};
     limit = std::min(limit, squared_limit(foot.distance));
   };
-  if (hint >= 0) offer(static_cast<std::size_t>(hint));  // near, so that most boxes are too far
-  tree_.descend_near([&](const Aabb& box) { return squared_distance(p, box); }, limit,
-                     [&](const auto& leaf) {
-                       tree_.each_place(leaf, [&](std::uint32_t place) {
-                         if (squared_distance(p, boxes_[place]) <= limit)
-                           offer(tree_.object(place));
-                       });
-                     });
+  const auto look_below = [&](std::uint32_t node) {
+    tree_.descend_near([&](const Aabb& box) { return squared_distance(p, box); }, limit,
+                       [&](const auto& leaf) {
+                         tree_.each_place(leaf, [&](std::uint32_t place) {
+                           if (squared_distance(p, boxes_[place]) <= limit)
+                             offer(tree_.object(place), tree_.number_of(leaf));
+                         });
+                       },
+                       node);
+  };
+  look_below(hint);
+  for (std::uint32_t node = hint; node != 0; node = parents_[(node - 1) / 2])
+    look_below(node % 2 == 1 ? node + 1 : node - 1);
   return best;
 }
 
@@ -88,11 +97,11 @@ template <class ReachOf>
 BestDonors NearestCells::find_all(const MeshView& mesh, std::span<const Point> points,
                                   const ReachOf& reach_of, std::uint64_t& n_tested) const {
   BestDonors out;
-  std::int32_t hint = -1;
+  std::uint32_t hint = 0;
   for (std::uint32_t i = 0; i < points.size(); ++i) {
     const Best best = find(mesh, points[i], reach_of(i), hint, n_tested);
     if (best.cell < 0) continue;
-    hint = best.cell;
+    hint = best.leaf;
     const Tet& cell = mesh.tets[static_cast<std::size_t>(best.cell)];
     const std::array<Point, 4> corners = corners_of(mesh.points, cell);
     const Location location = location_of(best.foot, points[i], corners, mesh.dimension);

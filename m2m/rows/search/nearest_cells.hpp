@@ -37,6 +37,7 @@ class NearestCells {
  private:
   struct Best {
     std::int32_t cell = -1;
+    std::uint32_t leaf = 0;  // of the tree, that holds it
     Candidate candidate{};
     Foot foot{};
   };
@@ -44,15 +45,17 @@ class NearestCells {
     double length = 0;
     bool snaps = false;  // also within the snap_reach() of a cell
   };
-  [[nodiscard]] Best find(const MeshView& mesh, const Point& p, Reach reach, std::int32_t hint,
+  /// Looks at the leaves around the leaf `hint` first.
+  [[nodiscard]] Best find(const MeshView& mesh, const Point& p, Reach reach, std::uint32_t hint,
                           std::uint64_t& n_tested) const;
   template <class ReachOf>
   [[nodiscard]] BestDonors find_all(const MeshView& mesh, std::span<const Point> points,
                                     const ReachOf& reach_of, std::uint64_t& n_tested) const;
 
   collide::BoxTree<Aabb, 3> tree_;
-  std::vector<Aabb> boxes_;     // of the cells, by their places in the tree
-  double most_snap_reach_ = 0;  // not less than that of any cell
+  std::vector<std::uint32_t> parents_;  // of nodes 2 k + 1 and 2 k + 2, which are siblings
+  std::vector<Aabb> boxes_;             // of the cells, by their places in the tree
+  double most_snap_reach_ = 0;          // not less than that of any cell
 };
 
 }  // namespace tess::m2m

@@ -43,10 +43,16 @@ Exact exact_foot(const Point& p, const Corners& c) {
   return best;
 }
 
+/// A search must not pass over a triangle at this distance.
+void check_not_beyond(const Point& p, const Corners& corners, double distance) {
+  if (is_beyond(p, corners, distance * distance)) FAIL("beyond its distance " << distance);
+}
+
 /// The weights are those of a point at this distance.
 void check_location(const Point& p, const Corners& corners, std::int32_t dimension, double scale) {
   const Foot foot = foot_of(p, corners, dimension);
   const Location at = location_of(foot, p, corners, dimension);
+  if (dimension == 2) check_not_beyond(p, corners, foot.distance);
   double sum = 0;
   Point q{};
   for (std::size_t i = 0; i < 4; ++i) {
@@ -117,6 +123,7 @@ TEST_CASE("feet on slivers, at any scale and far from the origin, are those of e
           INFO("scale " << scale << ", offset " << offset << ", " << sides[1] << ", case " << k);
           const tess::collide::Triangle triangle{{corners[0], corners[1], corners[2]}};
           const Foot foot = foot_of(p, corners, 2);
+          check_not_beyond(p, corners, foot.distance);
           const auto weights = tess::collide::nearest_weights(triangle, p);
           for (std::size_t i = 0; i < 3; ++i)
             if ((weights[i] > 0) != ((foot.feature >> i & 1U) != 0)) FAIL("feature");
@@ -135,16 +142,18 @@ TEST_CASE("the triangles at an edge give it the same distance in any order", "[m
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> part(0, 1);
   const auto point = [&] { return Point{part(random), part(random), part(random)}; };
-  int n_edge = 0;
+  int n_edge = 0, n_beyond = 0;
   for (int k = 0; k < 4000; ++k) {
     const Point a = point(), b = point(), c = point(), d = point(), p = point();
     const Foot one = foot_of(p, {a, b, c, c}, 2), other = foot_of(p, {d, b, a, a}, 2);
+    n_beyond += is_beyond(p, {a, b, c, c}, 0.25 * one.distance * one.distance) ? 1 : 0;
     if (one.feature != 0b011 || other.feature != 0b110) continue;
     ++n_edge;
     if (one.distance != other.distance) FAIL("case " << k);
     if (one.distance != foot_of(p, {b, a, a, a}, 1).distance) FAIL("case " << k << ", edge");
   }
   CHECK(n_edge > 100);
+  CHECK(n_beyond > 1000);
 }
 
 TEST_CASE(
