@@ -6,6 +6,7 @@
 // | `nearest`              | of the source tetrahedron with the nearest centroid       | 1     |
 // | `moving_least_squares` | of the fit to source tetrahedra's values at centroids     | 2, 1  |
 // | `linear`               | of the source cell that holds its centroid                | 1     |
+// | `native`               | the same                                                  | 1     |
 // | `projection`           | the same, and outside of the nearest one                  | 1     |
 // | `second_order`         | the same, with the recovered gradient of the source cell  | 2     |
 // | `limited`              | the same, kept within the source cells around             | 2     |

@@ -74,6 +74,35 @@ struct SplitElements {
   friend bool operator==(const SplitElements&, const SplitElements&) = default;
 };
 
+/// Elements with shape functions of their own: TET10, HEX8, WEDGE6 and PYRAMID5 by their numbers of
+/// vertices.
+[[nodiscard]] constexpr bool is_native(std::int64_t n_vertices) noexcept {
+  return n_vertices == 10 || n_vertices == 8 || n_vertices == 6 || n_vertices == 5;
+}
+/// The vertices of the element that begins there in NativeElements::vertices.
+[[nodiscard]] inline std::span<const VertexId> vertices_of_element(std::span<const VertexId> all,
+                                                                   std::int64_t begin) {
+  const auto at = static_cast<std::size_t>(begin);
+  return all.subspan(at + 1, static_cast<std::size_t>(all[at]));
+}
+/// The elements that tetrahedra were split from. Kind `native` uses their shape functions.
+struct NativeElements {
+  /// Per tetrahedron, where its element begins in `vertices`; -1 if it is an element itself. Empty
+  /// if all are, and of surfaces.
+  std::vector<std::int64_t> of_tet{};
+  /// Per element how many vertices it has, which says its type, and then these in the order of
+  /// ExodusII.
+  std::vector<VertexId> vertices{};
+
+  [[nodiscard]] std::span<const VertexId> vertices_at(std::int64_t begin) const {
+    return vertices_of_element(vertices, begin);
+  }
+  template <class Archive>
+  void serialize(Archive& ar) {
+    ar(of_tet, vertices);
+  }
+};
+
 struct TetMesh {
   std::string name;             ///< a path, "kuhn:8", or a name that the application chooses
   std::vector<Point> points;    ///< n_points × 3
@@ -89,6 +118,7 @@ struct TetMesh {
   /// 3: the cells are tetrahedra. A wall or a plane mesh has 2: its cells are triangles, which
   /// repeat their last vertex (a, b, c, c). A line has 1: its cells are edges (a, b, b, b).
   std::int32_t dimension = 3;
+  NativeElements elements{};
 
   [[nodiscard]] std::size_t n_points() const noexcept { return points.size(); }
   [[nodiscard]] std::size_t n_tets() const noexcept { return tets.size(); }

@@ -24,6 +24,11 @@ struct MeshView {
   /// are also in other parts. -1: all are its own.
   std::int64_t n_own_tets = -1;
   std::int32_t dimension = 3;  ///< of its cells: TetMesh::dimension
+  /// For kind native, as in NativeElements; -1 for a halo.
+  std::span<const std::int64_t> element_of_tet{};
+  std::span<const VertexId> element_vertices{};
+  /// The tetrahedra were split from elements, which this part does not hold: kind native refuses it.
+  bool lacks_elements = false;
 
   [[nodiscard]] std::span<const Point> owned() const {
     return points.first(static_cast<std::size_t>(n_owned));
@@ -37,5 +42,11 @@ struct MeshView {
 /// must be finite and at most 1e100, corners in range, cells of the dimension, and ids as many as
 /// points and cells.
 void validate(const MeshView& mesh);
+
+/// Throws Error (bad_mesh) with the first tetrahedron whose element cannot be used: `of_tet` is empty
+/// or has an entry per tetrahedron, elements are in range and of a known number of vertices, which
+/// are points, and have the corners of the tetrahedron among them.
+void require_elements(std::span<const std::int64_t> of_tet, std::span<const VertexId> vertices,
+                      std::span<const Tet> tets, std::size_t n_points);
 
 }  // namespace tess::m2m

@@ -34,6 +34,9 @@ namespace tess::m2m {
 struct PlaceOptions {
   std::int32_t n_parts = 1;
   std::int32_t halo_layers = 0;
+  /// For kind native: keeps the elements that tetrahedra of a mesh in memory were split from. PE 0
+  /// cuts such a mesh.
+  bool keeps_elements = false;
 };
 static_assert(std::is_trivially_destructible_v<PlaceOptions>,
               "g++ 12 destroys an aggregate twice that is written in a co_await expression");

@@ -25,6 +25,9 @@ struct Tally {
   /// Counts, for moving least squares, points whose neighbours determine a polynomial of lower
   /// order only, or one of this order in fewer directions, such as those in a plane.
   std::uint64_t n_lower_order = 0, n_lower_dimension = 0;
+  /// Counts, for kind native, points whose element folds over or does not reach them: they have the
+  /// linear value of the tetrahedron.
+  std::uint64_t n_linear = 0;
 
   [[nodiscard]] std::uint64_t count(Status status) const {
     return counts[static_cast<std::size_t>(status)];
@@ -37,6 +40,7 @@ struct Tally {
     n_lost += other.n_lost;
     n_lower_order += other.n_lower_order;
     n_lower_dimension += other.n_lower_dimension;
+    n_linear += other.n_linear;
     if (other.most_covered > most_covered) most_covered = other.most_covered;
     return *this;
   }

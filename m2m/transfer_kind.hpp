@@ -16,6 +16,9 @@ enum class TransferKind : std::uint8_t {
   /// the polynomial that fits the values of the nearest vertices best, of clouds or of meshes, also
   /// outside: second order, or third (CouplingOptions::order); not bounded
   moving_least_squares,
+  /// by the shape functions of the elements that tetrahedra were split from: second order and exact
+  /// for trilinear fields in parallelepipeds, third order of ten-node tetrahedra; linear in others
+  native,
   conservative,          ///< L2 projection: keeps the integral; second order, not bounded
   conservative_bounded,  ///< the same, kept within the source values that overlap
   conservative_lumped,   ///< with lumped masses: keeps integral and bounds, but smooths
@@ -27,13 +30,14 @@ inline constexpr std::array all_transfer_kinds{
     TransferKind::nearest,
     TransferKind::projection,
     TransferKind::moving_least_squares,
+    TransferKind::native,
     TransferKind::conservative,
     TransferKind::conservative_bounded,
     TransferKind::conservative_lumped,
 };
 
-/// "linear", "second-order", "limited", "nearest", "projection", "moving-least-squares", "conservative",
-/// "conservative-bounded" or "conservative-lumped".
+/// "linear", "second-order", "limited", "nearest", "projection", "moving-least-squares", "native",
+/// "conservative", "conservative-bounded" or "conservative-lumped".
 [[nodiscard]] const char* name_of(TransferKind kind) noexcept;
 /// The kind of a name. Throws Error (bad_argument) for any other text.
 [[nodiscard]] TransferKind parse_transfer_kind(const std::string& text);
@@ -63,8 +67,10 @@ enum class Centring : std::uint8_t {
 }
 
 /// The layers of tetrahedra around a part that a kind needs, so that the result does not depend on
-/// the partition: in the source, for gradients; in the target, for masses and loads.
+/// the partition: in the source, for gradients, or for the vertices of elements that are cut; in
+/// the target, for masses and loads.
 [[nodiscard]] constexpr std::int32_t source_halo_layers(TransferKind kind) noexcept {
+  if (kind == TransferKind::native) return 1;
   return kind == TransferKind::second_order || kind == TransferKind::limited ? 2 : 0;
 }
 [[nodiscard]] constexpr std::int32_t target_halo_layers(TransferKind kind) noexcept {

@@ -480,6 +480,7 @@ std::string table(const FileFieldsReport& r) {
     line(title, elements);
   if (r.searched) line("found", found_text(r.tally.counts));
   line("overlaps", overcovered_text(r.tally));
+  line("not native", linear_text(r.tally));
   if (r.has_cells) line("cells found", found_text(r.cell_tally.counts));
   line("overlaps", overcovered_text(r.cell_tally));
   for (const std::string& place : texts_of(r.worst)) line("farthest", place);
@@ -510,6 +511,7 @@ kit::Json json_of(const FileFieldsReport& r) {
   };
   if (r.searched) {
     add_found("", r.tally);
+    if (r.tally.n_linear > 0) whole["linear"] = r.tally.n_linear;
     whole["farthest"] = json_of(r.worst);
   } else if (!r.has_cells) {
     whole["without_weights"] = r.n_without;

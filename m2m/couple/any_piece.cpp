@@ -121,8 +121,10 @@ void AnyPiece::m2m_receive_names(CouplingId id, const std::vector<SourcePiece>& 
 }
 void AnyPiece::m2m_choose(Choice choice) {
   SourceSide& from = couplings.source(choice.coupling);
-  for (auto& [target, answer] : from.choose(m2m_view(), std::move(choice)))
+  std::uint64_t n_linear = 0;
+  for (auto& [target, answer] : from.choose(m2m_view(), std::move(choice), n_linear))
     m2m_send<&AnyPiece::m2m_receive>(from.setup.target, target, std::move(answer));
+  if (n_linear > 0) from.setup.ledger.local().add(Tally{.n_linear = n_linear});
 }
 
 void AnyPiece::m2m_give_values(CouplingId id, detail::Giver give, detail::Taker take) {

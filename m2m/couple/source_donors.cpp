@@ -40,6 +40,21 @@ double clamped(double value, const Donor& donor, const double* values, std::size
   return value < low ? low : value > high ? high : value;
 }
 
+/// Writes the values of the rows that are not empty.
+void put_rows(const Rows<double>& rows, std::span<const double> values, std::size_t n_components,
+              bool clamp, std::span<double> out) {
+  std::vector<double> all(out.size());
+  std::vector<ValueRange> ranges(clamp ? out.size() : 0);
+  m2m::apply(rows, values, n_components, all);
+  if (clamp) value_ranges(rows, values, n_components, ranges);
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    if (rows.columns_of(i / n_components).empty()) continue;
+    if (clamp && all[i] < ranges[i].low) all[i] = ranges[i].low;
+    if (clamp && all[i] > ranges[i].high) all[i] = ranges[i].high;
+    out[i] = all[i];
+  }
+}
+
 /// Names the place for a field in tetrahedra: rows of values in place of vertices.
 Donor in_tet(std::int32_t tet, const Weights& weights, Centring centring) {
   if (centring == Centring::cells) return donor_at(tet);
@@ -60,12 +75,17 @@ Aabb box_of_nearest(const MeshView& mesh, const CouplingSetup& setup) {
   return box;
 }
 
-DonorAnswer SourceSide::answer_points(collide::OwnerId target, BestDonors found) {
+DonorAnswer SourceSide::answer_points(const SearchQuery& query, BestDonors found) {
+  Given& given = given_[query.from];
+  if (setup.kind == TransferKind::native)
+    for (std::size_t i = 0; i < found.donors.size(); ++i)
+      given.points.push_back({std::get<DonorQuery>(query.what).points[found.points[i]],
+                              {found.tets[i], found.donors[i].weights},
+                              found.candidates[i].status == Status::snapped});
   if (setup.source_values != Centring::nodes)
     for (std::size_t i = 0; i < found.donors.size(); ++i)
       found.donors[i] = in_tet(found.tets[i], found.donors[i].weights, setup.source_values);
-  std::vector<Donor>& donors = given_[target].donors;
-  donors.insert(donors.end(), found.donors.begin(), found.donors.end());
+  given.donors.insert(given.donors.end(), found.donors.begin(), found.donors.end());
   return {std::move(found.points), std::move(found.candidates)};
 }
 
@@ -95,8 +115,14 @@ NearestAnswer SourceSide::answer_nearest(const MeshView& mesh, const NearestQuer
   return answer;
 }
 
-void SourceSide::choose_donors(const Choice& choice) {
-  std::vector<Donor>& donors = given_[choice.from].donors;
+void SourceSide::choose_donors(const MeshView& mesh, const Choice& choice,
+                               std::uint64_t& n_linear) {
+  Given& given = given_[choice.from];
+  std::vector<Donor>& donors = given.donors;
+  if (setup.kind == TransferKind::native)
+    for (const std::uint32_t point : choice.kept)
+      add_native_row(mesh, given.points[point], given.rows, n_linear);
+  given.points = {};
   if (choice.kept.size() < donors.size()) {
     std::vector<Donor> kept;
     kept.reserve(choice.kept.size() + choice.vertices.size());
@@ -104,6 +130,10 @@ void SourceSide::choose_donors(const Choice& choice) {
     donors = std::move(kept);
   }
   for (const VertexId vertex : choice.vertices) donors.push_back(donor_at(vertex));
+  if (given.rows.columns.empty())
+    given.rows = {};
+  else
+    given.rows.begin.resize(donors.size() + 1, given.rows.columns.size());
   if (donors.empty()) given_.erase(choice.from);
 }
 
@@ -146,10 +176,11 @@ std::vector<Point> SourceSide::gradients(std::span<const double> values,
   return all;
 }
 
-std::vector<double> SourceSide::interpolate(const MeshView& mesh, std::span<const Donor> donors,
+std::vector<double> SourceSide::interpolate(const MeshView& mesh, const Given& given,
                                             std::span<const double> values,
                                             std::span<const Point> gradients,
                                             std::size_t n_components) const {
+  const std::span<const Donor> donors = given.donors;
   std::vector<double> out(donors.size() * n_components);
   if (needs_gradients(setup.kind)) {
     std::vector<Tet> tets;
@@ -170,17 +201,25 @@ std::vector<double> SourceSide::interpolate(const MeshView& mesh, std::span<cons
       const double value = interpolated(donor.weights, donor.vertices, from, n_components);
       *to++ = setup.clamp ? clamped(value, donor, from, n_components) : value;
     }
+  if (given.rows.n_rows() > 0) put_rows(given.rows, values, n_components, setup.clamp, out);
   return out;
 }
 
-Rows<double> SourceSide::weights_of(const MeshView& mesh, std::span<const Donor> donors) const {
+Rows<double> SourceSide::weights_of(const MeshView& mesh, const Given& given) const {
   std::vector<Tet> tets;
   std::vector<PointInTet> points;
-  for (const Donor& donor : donors) {
+  for (const Donor& donor : given.donors) {
     points.push_back({static_cast<std::int32_t>(tets.size()), donor.weights});
     tets.push_back(donor.vertices);
   }
-  if (setup.kind != TransferKind::second_order) return linear_rows(tets, points);
+  if (setup.kind != TransferKind::second_order) {
+    Rows<double> linear = linear_rows(tets, points);
+    if (given.rows.n_rows() == 0) return linear;
+    Rows<double> rows;
+    for (std::size_t i = 0; i < tets.size(); ++i)
+      rows.add_row(given.rows.columns_of(i).empty() ? linear : given.rows, i);
+    return rows;
+  }
   Rows<Point> gradients;  // one per point of the piece; empty where no donor needs it
   std::size_t next = 0;
   for (std::size_t v = 0; v < mesh.points.size(); ++v) {

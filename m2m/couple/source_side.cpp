@@ -1,6 +1,7 @@
 #include "m2m/couple/source_side.hpp"
 
 #include "runtime/core/check.hpp"
+#include "runtime/core/error.hpp"
 
 #include <utility>
 
@@ -9,6 +10,11 @@ namespace tess::m2m {
 std::vector<Aabb> SourceSide::start_search(const MeshView& mesh) {
   validate(mesh);
   require_dimension(setup.kind, mesh.dimension);
+  if (setup.kind == TransferKind::native && mesh.lacks_elements)
+    fail(
+        ErrorCode::bad_argument,
+        "kind native needs the elements that the tetrahedra of a source piece were split from: cut "
+        "the mesh with 1 halo layer, source_halo_layers(), and place() it with elements");
   queries_.clear();
   given_.clear();
   attached_.clear();
@@ -77,12 +83,13 @@ Addressed<SearchAnswer> SourceSide::answers(const MeshView& mesh, std::uint64_t&
     else if (const auto* of_nearest = std::get_if<NearestQuery>(&query.what))
       what = answer_nearest(mesh, *of_nearest);
     else
-      what = answer_points(query.from, std::move(*next++));
+      what = answer_points(query, std::move(*next++));
   }
   return out;
 }
 
-Addressed<SearchAnswer> SourceSide::choose(const MeshView& mesh, Choice choice) {
+Addressed<SearchAnswer> SourceSide::choose(const MeshView& mesh, Choice choice,
+                                           std::uint64_t& n_linear) {
   Addressed<SearchAnswer> out;
   if (choice.is_alone)
     attached_.push_back(choice.from);
@@ -91,7 +98,7 @@ Addressed<SearchAnswer> SourceSide::choose(const MeshView& mesh, Choice choice) 
   else if (setup.applies_at_target())
     given_[choice.from].sent = std::move(choice.vertices);
   else
-    choose_donors(choice);
+    choose_donors(mesh, choice, n_linear);
   return out;
 }
 
@@ -120,15 +127,14 @@ void SourceSide::give(const MeshView& mesh, std::span<const double> values, deta
                              round,
                              setup.applies_at_target()
                                  ? loads(given, values, n_components)
-                                 : interpolate(mesh, given.donors, values, slopes, n_components)});
+                                 : interpolate(mesh, given, values, slopes, n_components)});
 }
 
 Addressed<Rows<double>> SourceSide::donor_rows(const MeshView& mesh) {
   check_rows(mesh);
   prepare(mesh);
   Addressed<Rows<double>> out;
-  for (const auto& [target, given] : given_)
-    out.emplace_back(target, weights_of(mesh, given.donors));
+  for (const auto& [target, given] : given_) out.emplace_back(target, weights_of(mesh, given));
   return out;
 }
 

@@ -10,6 +10,7 @@
 #include "m2m/rows/search/nearest_cells.hpp"
 #include "m2m/rows/search/nearest_vertex.hpp"
 #include "m2m/rows/search/same_mesh.hpp"
+#include "m2m/rows/weights/native_rows.hpp"
 #include "m2m/rows/weights/rows.hpp"
 
 #include <cstdint>
@@ -40,8 +41,10 @@ class SourceSide {
   /// to them. Adds to `n_tested` how many pairs of a tetrahedron and a point in its box, or of
   /// tetrahedra that no face clearly separates, were looked at.
   [[nodiscard]] Addressed<SearchAnswer> answers(const MeshView& mesh, std::uint64_t& n_tested);
-  /// Ends the search with a target piece. Returns the answer that it waits for, if it does.
-  [[nodiscard]] Addressed<SearchAnswer> choose(const MeshView& mesh, Choice choice);
+  /// Ends the search with a target piece. Returns the answer that it waits for, if it does. Adds to
+  /// `n_linear` as Tally::n_linear counts.
+  [[nodiscard]] Addressed<SearchAnswer> choose(const MeshView& mesh, Choice choice,
+                                               std::uint64_t& n_linear);
 
   /// Calls send(target piece, values) for every target piece that gets values from this one.
   /// `values`: of all points of the piece, n_points × n_components, row-major; or a row per
@@ -61,15 +64,16 @@ class SourceSide {
   }
 
  private:
-  /// What a target piece gets: donors, or with conservative kinds rows. Until the choice: what the
-  /// answer has.
+  /// What a target piece gets: donors, or with conservative kinds rows. With kind native the rows
+  /// that are not empty stand for their donors. Until the choice: what the answer has.
   struct Given {
     std::vector<Donor> donors{};
     Rows<double> rows{};
-    std::vector<VertexId> sent{};  // unknowns whose raw values are sent, too
+    std::vector<VertexId> sent{};       // unknowns whose raw values are sent, too
+    std::vector<NativePoint> points{};  // of the donors, until the choice
     template <class Ar>
     void serialize(Ar& ar) {
-      ar(donors, rows, sent);
+      ar(donors, rows, sent, points);
     }
   };
 
@@ -77,11 +81,11 @@ class SourceSide {
   [[nodiscard]] std::vector<BestDonors> locate(const MeshView& mesh,
                                                std::span<const SearchQuery> queries,
                                                std::uint64_t& n_tested);
-  [[nodiscard]] DonorAnswer answer_points(collide::OwnerId target, BestDonors found);
+  [[nodiscard]] DonorAnswer answer_points(const SearchQuery& query, BestDonors found);
   [[nodiscard]] NearestAnswer answer_nearest(const MeshView& mesh, const NearestQuery& query);
   [[nodiscard]] OverlapAnswer answer_overlaps(const MeshView& mesh, collide::OwnerId target,
                                               const TargetTets& tets, std::uint64_t& n_tested);
-  void choose_donors(const Choice& choice);
+  void choose_donors(const MeshView& mesh, const Choice& choice, std::uint64_t& n_linear);
   [[nodiscard]] PartialRows choose_rows(const MeshView& mesh, const Choice& choice);
 
   /// Ends the job if the piece's mesh has changed since the search: donors are positions in it.
@@ -91,13 +95,13 @@ class SourceSide {
   /// n_points × n_components where a donor needs them; empty if the kind needs none.
   [[nodiscard]] std::vector<Point> gradients(std::span<const double> values,
                                              std::size_t n_components) const;
-  [[nodiscard]] std::vector<double> interpolate(const MeshView& mesh, std::span<const Donor> donors,
+  [[nodiscard]] std::vector<double> interpolate(const MeshView& mesh, const Given& given,
                                                 std::span<const double> values,
                                                 std::span<const Point> gradients,
                                                 std::size_t n_components) const;
   [[nodiscard]] std::vector<double> loads(const Given& given, std::span<const double> values,
                                           std::size_t n_components) const;
-  [[nodiscard]] Rows<double> weights_of(const MeshView& mesh, std::span<const Donor> donors) const;
+  [[nodiscard]] Rows<double> weights_of(const MeshView& mesh, const Given& given) const;
 
   SameMesh same_;
   SameMesh::Answer stays_ = SameMesh::Answer::moved;  // in the last search

@@ -207,8 +207,20 @@ std::unique_ptr<MeshRanges> take_ranges(const std::string& name, PlacerSetup& se
 
 TaskOf<PlacedMesh> place(const TetMesh* mesh, PlaceOptions options,
                          std::vector<FormulaField> fields) {
-  PlacerSetup setup = setup_of(mesh->name, options, std::move(fields));
+  PlacerSetup setup = setup_of(mesh->name, options, fields);
   take_sizes(*mesh, setup);
+  setup.lacks_elements = !mesh->elements.of_tet.empty();
+  if (setup.lacks_elements && options.keeps_elements) {
+    PlacedMesh placed{{}, setup.n_points, setup.n_tets, validate(*mesh)};
+    std::vector<Field> sampled;
+    for (const FormulaField& field : fields)
+      sampled.push_back(sample(*mesh, field.name, make_formula(field.name, field.domain)));
+    co_await epoch([&] {
+      placed.mesh =
+          scatter(*mesh, sampled, options.n_parts, PartitionMethod::curve, options.halo_layers);
+    });
+    co_return placed;
+  }
   co_return co_await place_ranges(std::move(setup), mesh);
 }
 

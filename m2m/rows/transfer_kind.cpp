@@ -19,6 +19,8 @@ const char* name_of(TransferKind kind) noexcept {
       return "projection";
     case TransferKind::moving_least_squares:
       return "moving-least-squares";
+    case TransferKind::native:
+      return "native";
     case TransferKind::conservative:
       return "conservative";
     case TransferKind::conservative_bounded:

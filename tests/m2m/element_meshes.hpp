@@ -4,10 +4,12 @@
 #include "m2m/io/elements/split_element.hpp"
 #include "m2m/mesh.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>
 #include <map>
+#include <random>
 #include <vector>
 
 namespace tess::test {
@@ -79,6 +81,18 @@ inline m2m::TetMesh element_mesh(m2m::ElementType type, int n) {
         }
       }
   splitter.finish();
+  return mesh;
+}
+
+/// Moves the inner vertices of a mesh of the unit cube by up to `amount` per axis.
+inline m2m::TetMesh shaken(m2m::TetMesh mesh, double amount) {
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> by(-amount, amount);
+  for (m2m::Point& p : mesh.points) {
+    const auto is_inner = [](double x) { return x > 1e-9 && x < 1 - 1e-9; };
+    if (std::ranges::all_of(p, is_inner))
+      for (double& x : p) x += by(random);
+  }
   return mesh;
 }
 

@@ -1,5 +1,6 @@
 #include "tests/m2m/overlapping.hpp"
 
+#include "m2m/rows/weights/native_rows.hpp"
 #include "tests/m2m/cell_grid.hpp"
 
 #include <algorithm>
@@ -90,6 +91,26 @@ std::vector<PointInTet> place_points(MeshView source, std::span<const Point> poi
     }
   }
   return placed;
+}
+
+std::vector<double> native_values(const TetMesh& mesh, std::span<const double> values,
+                                  std::span<const Point> points, std::uint64_t& n_linear) {
+  MeshView whole = view(mesh);
+  whole.element_of_tet = mesh.elements.of_tet;
+  whole.element_vertices = mesh.elements.vertices;
+  const std::vector<PointInTet> places = place_points(whole, points);
+  std::vector<double> out;
+  n_linear = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Tet& tet = mesh.tets[static_cast<std::size_t>(places[i].tet)];
+    const auto location = locate(points[i], corners_of(mesh.points, tet));
+    Rows<double> row;
+    add_native_row(whole, {points[i], places[i], location->status == Status::snapped}, row,
+                   n_linear);
+    out.push_back(interpolated(places[i].weights, tet, values.data(), 1));
+    if (!row.columns.empty()) apply(row, values, 1, std::span(&out.back(), 1));
+  }
+  return out;
 }
 
 }  // namespace tess::test

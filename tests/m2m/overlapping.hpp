@@ -30,6 +30,12 @@ struct TetPair {
 [[nodiscard]] std::vector<std::array<double, 4>> covered_by(const m2m::OverlapRows& rows,
                                                             const m2m::TetMesh& target);
 
+/// Values of kind native at points in the mesh, of values at its vertices, in one loop.
+[[nodiscard]] std::vector<double> native_values(const m2m::TetMesh& mesh,
+                                                std::span<const double> values,
+                                                std::span<const m2m::Point> points,
+                                                std::uint64_t& n_linear);
+
 /// The best candidate for each point; tetrahedron -1 if none holds it.
 [[nodiscard]] std::vector<m2m::PointInTet> place_points(m2m::MeshView source,
                                                         std::span<const m2m::Point> points);

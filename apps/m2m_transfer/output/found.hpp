@@ -51,6 +51,13 @@ namespace m2m_transfer {
       tally.n_overcovered, tally.most_covered);
 }
 
+/// Empty if all points of kind native have the shape functions of their elements.
+[[nodiscard]] inline std::string linear_text(const tess::m2m::Tally& tally) {
+  if (tally.n_linear == 0) return {};
+  return fmt::format("{} in elements that fold over there or do not reach them: linear values",
+                     tally.n_linear);
+}
+
 /// "vertex 17 at (0, 0.5, 1): 0.125, outside", a text per place.
 [[nodiscard]] inline std::vector<std::string> texts_of(const tess::m2m::WorstPlaces& places) {
   std::vector<std::string> out;

@@ -53,6 +53,7 @@ const kit::Rows<FieldRow>& field_rows() {
       {"outside", "outside", "7", count_of<3>},
       {"overcovered", "", nullptr, [](R r) { return of_covers(r, &Tally::n_overcovered); }},
       {"most_covered", "", nullptr, [](R r) { return of_covers(r, &Tally::most_covered); }},
+      {"linear", "", nullptr, [](R r) -> Json { return r.report->tally.n_linear; }},
       {"field", "field", "<", [](R r) -> Json { return r.field->name; }},
       {"l2", "L2", "10.4e", [](R r) -> Json { return r.field->norms.l2; }},
       {"l2_relative", "relative", "10.4e", [](R r) -> Json { return r.field->norms.l2_relative; }},

@@ -65,6 +65,7 @@ std::string table(const TransferReport& r) {
     line(title, elements);
   line("found", found_text(r.tally.counts));
   if (const std::string text = overcovered_text(r.tally); !text.empty()) line("overlaps", text);
+  if (const std::string text = linear_text(r.tally); !text.empty()) line("not native", text);
   for (const std::string& place : texts_of(r.worst)) line("farthest", place);
   line("candidates",
        fmt::format("{} ({:.2f} per vertex)", r.tally.n_candidates,

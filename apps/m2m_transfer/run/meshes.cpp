@@ -15,7 +15,8 @@ namespace {
 TaskOf<std::vector<DistributedMesh>> place_together(const Problem& problem) {
   std::vector<TaskOf<PlacedMesh>> tasks;
   for (std::size_t m = 0; m < problem.meshes.size(); ++m) {
-    const PlaceOptions options{problem.chares(), halo_for(problem.kind, m, problem.pairs)};
+    const PlaceOptions options{problem.chares(), halo_for(problem.kind, m, problem.pairs),
+                               problem.kind == tess::m2m::TransferKind::native};
     std::vector<FormulaField> fields;
     for (const std::string& name : problem.field_names)
       fields.push_back({needs_values(m, problem.pairs) ? name : "0", problem.domain});

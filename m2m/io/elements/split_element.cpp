@@ -118,13 +118,14 @@ void split_element(ElementType type, std::span<const VertexId> vertices, std::ve
 void ElementSplitter::add(ElementType type, std::span<const VertexId> vertices) {
   const auto first_tet = static_cast<GlobalId>(mesh_.n_tets());
   if (runs_.empty() || runs_.back().type != type)
-    runs_.push_back({type, n_elements_, first_tet, {}, {}});
+    runs_.push_back({type, n_elements_, first_tet, std::ssize(mesh_.elements.vertices), {}});
   ++n_elements_;
   split_element(type, vertices, mesh_.tets);
   if (is_simplex(type)) return;
-  Run& run = runs_.back();
-  run.vertices.insert(run.vertices.end(), vertices.begin(), vertices.end());
-  run.first_tets.push_back(first_tet);
+  std::vector<VertexId>& all = mesh_.elements.vertices;
+  all.push_back(static_cast<VertexId>(vertices.size()));
+  all.insert(all.end(), vertices.begin(), vertices.end());
+  runs_.back().first_tets.push_back(first_tet);
 }
 
 const ElementSplitter::Run* ElementSplitter::run_of(GlobalId element) const {
@@ -149,10 +150,10 @@ void ElementSplitter::append_side(GlobalId element, std::int64_t side,
     return;
   }
   const Shape& shape = shape_of(run->type);
+  const std::span<const VertexId> vertices = mesh_.elements.vertices_at(run->begin_of(number));
   std::vector<VertexId> face;
   for (const std::int8_t v : shape.sides[static_cast<std::size_t>(side - 1)])
-    if (v >= 0)
-      face.push_back(run->vertices[number * shape.n_vertices + static_cast<std::size_t>(v)]);
+    if (v >= 0) face.push_back(vertices[static_cast<std::size_t>(v)]);
   const Run* const next =
       run_of(run->first_element + static_cast<GlobalId>(run->first_tets.size()));
   const GlobalId end =
@@ -189,6 +190,7 @@ void ElementSplitter::finish() {
       std::any_of(runs_.begin(), runs_.end(), [](const Run& run) { return !is_simplex(run.type); });
   if (!any) return;
   mesh_.element_of_tet.resize(mesh_.n_tets());
+  if (mesh_.dimension == 3) mesh_.elements.of_tet.assign(mesh_.n_tets(), -1);
   for (std::size_t r = 0; r < runs_.size(); ++r) {
     const Run& run = runs_[r];
     const GlobalId end =
@@ -202,6 +204,9 @@ void ElementSplitter::finish() {
         element = run.first_element + (after - run.first_tets.begin()) - 1;
       }
       mesh_.element_of_tet[static_cast<std::size_t>(t)] = element;
+      if (mesh_.dimension == 3 && !is_simplex(run.type))
+        mesh_.elements.of_tet[static_cast<std::size_t>(t)] =
+            run.begin_of(static_cast<std::size_t>(element - run.first_element));
     }
     if (is_simplex(run.type)) continue;
     const auto known = std::find_if(mesh_.split.begin(), mesh_.split.end(), [&](const auto& split) {

@@ -8,8 +8,8 @@
 //
 // A hexahedron gives six tetrahedra, a wedge three, a pyramid two. Elements with repeated vertices
 // (a wedge written as a hexahedron) give fewer. A ten-node tetrahedron gives eight: four at its
-// corners, and four of the octahedron between them (Bey 1995); tet10.hpp evaluates it as a quadratic
-// element. Meshes of surfaces and lines have triangles (six-node ones are split into four),
+// corners, and four of the octahedron between them (Bey 1995). Kind native evaluates the
+// elements themselves (native_element.hpp). Meshes of surfaces and lines have triangles (six-node ones are split into four),
 // quadrilaterals, cut as above, and edges: the "tetrahedra" of this file are cells then, as
 // TetMesh::dimension says.
 #pragma once
@@ -74,7 +74,7 @@ class ElementSplitter {
   [[nodiscard]] std::size_t n_sides_of(GlobalId element) const;
   /// Appends the faces that make up a side of an element.
   void append_side(GlobalId element, std::int64_t side, std::vector<Side>& sides) const;
-  /// Fills mesh.split and mesh.element_of_tet. The points of the mesh are there.
+  /// Fills mesh.split, mesh.element_of_tet and mesh.elements. The points of the mesh are there.
   void finish();
 
  private:
@@ -83,8 +83,11 @@ class ElementSplitter {
     ElementType type;
     GlobalId first_element = 0;
     GlobalId first_tet = 0;
-    std::vector<VertexId> vertices{};
+    std::int64_t first_vertex = 0;       // of its first element, in mesh.elements
     std::vector<GlobalId> first_tets{};  // per element
+    [[nodiscard]] std::int64_t begin_of(std::size_t number) const {
+      return first_vertex + static_cast<std::int64_t>(number * (1 + n_vertices(type)));
+    }
   };
   [[nodiscard]] const Run* run_of(GlobalId element) const;
   /// Elements with tetrahedra of both orientations, of those that the tetrahedra in a range make up.

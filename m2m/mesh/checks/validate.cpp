@@ -50,6 +50,32 @@ void require_unique(std::span<const GlobalId> ids, const char* what, const char*
 
 }  // namespace
 
+void require_elements(std::span<const std::int64_t> of_tet, std::span<const VertexId> vertices,
+                      std::span<const Tet> tets, std::size_t n_points) {
+  if (!of_tet.empty() && of_tet.size() != tets.size())
+    fail(ErrorCode::bad_mesh, "elements of ", of_tet.size(), " of ", tets.size(),
+         " tetrahedra are given; give each its element, or none");
+  for (std::size_t t = 0; t < of_tet.size(); ++t) {
+    const std::int64_t at = of_tet[t];
+    if (at == -1) continue;
+    const auto size = static_cast<std::int64_t>(vertices.size());
+    const std::int64_t n = at < 0 || at >= size ? 0 : vertices[static_cast<std::size_t>(at)];
+    if (!is_native(n) || n >= size - at)
+      fail(ErrorCode::bad_mesh, "the element of tetrahedron ", t, " begins at ", at, " of ", size,
+           " numbers and has ", n,
+           " vertices; give the number of vertices of a supported element, and then these");
+    const std::span<const VertexId> element = vertices_of_element(vertices, at);
+    for (const VertexId v : tets[t])
+      if (std::ranges::find(element, v) == element.end())
+        fail(ErrorCode::bad_mesh, "tetrahedron ", t, " has the corner ", v,
+             ", which is no vertex of its element; give the element that it was split from");
+    for (const VertexId v : element)
+      if (v < 0 || static_cast<std::size_t>(v) >= n_points)
+        fail(ErrorCode::bad_mesh, "the element of tetrahedron ", t, " names vertex ", v, " of ",
+             n_points, "; indices count from 0");
+  }
+}
+
 MeshCensus validate(const TetMesh& mesh) {
   const auto n = static_cast<GlobalId>(mesh.n_points());
   refuse_bad_counts(mesh.name, mesh.n_points(), mesh.n_tets(), skipped_text(mesh), mesh.dimension);
@@ -59,6 +85,7 @@ MeshCensus validate(const TetMesh& mesh) {
   findings.add_points(0, mesh.points);
   findings.add_corners(0, mesh.tets, n);
   findings.refuse_bad_ids(mesh.name, n);
+  require_elements(mesh.elements.of_tet, mesh.elements.vertices, mesh.tets, mesh.n_points());
   for (std::size_t t = 0; t < mesh.n_tets(); ++t)
     findings.add_shape(static_cast<GlobalId>(t), corners_of(mesh.points, mesh.tets[t]));
   findings.refuse_bad_shapes(mesh.name, mesh.n_tets());
@@ -103,6 +130,7 @@ void validate(const MeshView& mesh) {
                mesh.tet_ids[t], ", names point ", v, ", but the piece has ", n,
                " points; indices count from 0"
                " within the piece");
+  require_elements(mesh.element_of_tet, mesh.element_vertices, mesh.tets, mesh.points.size());
   if (mesh.dimension == 3) return;
   for (std::size_t t = 0; t < mesh.tets.size(); ++t)
     if (!has_dimension(mesh.tets[t], mesh.dimension))

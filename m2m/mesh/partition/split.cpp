@@ -45,6 +45,32 @@ void add_layer(const TetMesh& mesh, const TetsOfVertices& around, MeshPart& part
   sort_unique(part.point_ids);
 }
 
+/// Calls visit(tetrahedron, vertices of its element) for the part's own tetrahedra; for those that
+/// follow another one of the same element without vertices.
+template <class Visit>
+void for_elements(const NativeElements& all, const MeshPart& part, const Visit& visit) {
+  std::int64_t last = -1;
+  for (std::size_t t = 0; t < static_cast<std::size_t>(part.n_own_tets); ++t) {
+    const std::int64_t at = all.of_tet[static_cast<std::size_t>(part.tet_ids[t])];
+    if (at >= 0) visit(t, at == last ? std::span<const VertexId>() : all.vertices_at(at));
+    last = at;
+  }
+}
+
+void take_elements(const NativeElements& all, std::span<const VertexId> local, MeshPart& part) {
+  NativeElements& here = part.elements;
+  here.of_tet.assign(part.tet_ids.size(), -1);
+  std::int64_t next = 0;
+  for_elements(all, part, [&](std::size_t t, std::span<const VertexId> element) {
+    if (!element.empty()) {
+      next = std::ssize(here.vertices);
+      here.vertices.push_back(static_cast<VertexId>(element.size()));
+      for (const VertexId v : element) here.vertices.push_back(local[static_cast<std::size_t>(v)]);
+    }
+    here.of_tet[t] = next;
+  });
+}
+
 }  // namespace
 
 std::vector<MeshPart> split(const TetMesh& mesh, std::span<const std::int32_t> parts,
@@ -71,6 +97,9 @@ std::vector<MeshPart> split(const TetMesh& mesh, std::span<const std::int32_t> p
     owner[v] = static_cast<std::int32_t>(v * static_cast<std::size_t>(n_parts) / n);
     result[static_cast<std::size_t>(owner[v])].point_ids.push_back(static_cast<GlobalId>(v));
   }
+  const bool has_elements = !mesh.elements.of_tet.empty();
+  const bool keeps_elements = has_elements && (halo_layers > 0 || n_parts == 1);
+  if (keeps_elements) require_elements(mesh.elements.of_tet, mesh.elements.vertices, mesh.tets, n);
   const TetsOfVertices around(halo_layers == 0 ? MeshView{} : MeshView{mesh.points, mesh.tets});
   std::vector<VertexId> local(n, -1);
   for (std::int32_t p = 0; p < n_parts; ++p) {
@@ -85,7 +114,11 @@ std::vector<MeshPart> split(const TetMesh& mesh, std::span<const std::int32_t> p
     }
     part.n_own_tets = static_cast<std::int64_t>(part.tet_ids.size());
     for (std::int32_t layer = 0; layer < halo_layers; ++layer) add_layer(mesh, around, part);
-    std::sort(part.point_ids.begin(), part.point_ids.end());
+    if (keeps_elements)
+      for_elements(mesh.elements, part, [&](std::size_t, std::span<const VertexId> element) {
+        part.point_ids.insert(part.point_ids.end(), element.begin(), element.end());
+      });
+    sort_unique(part.point_ids);
     const auto owned = [&](GlobalId v) { return owner[static_cast<std::size_t>(v)] == p; };
     const auto middle = std::stable_partition(part.point_ids.begin(), part.point_ids.end(), owned);
     part.n_owned = middle - part.point_ids.begin();
@@ -100,6 +133,8 @@ std::vector<MeshPart> split(const TetMesh& mesh, std::span<const std::int32_t> p
       for (VertexId& v : tet) v = local[static_cast<std::size_t>(v)];
       part.tets.push_back(tet);
     }
+    if (keeps_elements) take_elements(mesh.elements, local, part);
+    part.lacks_elements = has_elements && !keeps_elements;
     for (const GlobalId v : part.point_ids) local[static_cast<std::size_t>(v)] = -1;
   }
   list_ghosts(result, owner);

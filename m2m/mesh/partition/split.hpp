@@ -27,19 +27,30 @@ struct MeshPart {
   std::vector<GlobalId> tet_ids;    ///< global ids of tets, ascending in each of the two
   std::int64_t n_owned = 0;
   std::int64_t n_own_tets = 0;
-  std::vector<Ghosts> ghosts;  ///< ghosts of owned points in other parts, by ascending part
-  std::int32_t dimension = 3;  ///< of its cells: TetMesh::dimension
+  std::vector<Ghosts> ghosts;   ///< ghosts of owned points in other parts, by ascending part
+  std::int32_t dimension = 3;   ///< of its cells: TetMesh::dimension
+  NativeElements elements{};    ///< of its own tetrahedra; of_tet has -1 for the halo
+  bool lacks_elements = false;  ///< since it has no halo, which would hold all of their vertices
 
   template <class Archive>
   void serialize(Archive& ar) {
-    ar(points, point_ids, tets, tet_ids, n_owned, n_own_tets, ghosts, dimension);
+    ar(points, point_ids, tets, tet_ids, n_owned, n_own_tets, ghosts, dimension, elements,
+       lacks_elements);
   }
 };
 
 /// A part as couplings see it, valid as long as the part.
 [[nodiscard]] inline MeshView view_of(const MeshPart& part) {
-  return {part.points,  part.tets,       part.point_ids, part.tet_ids,
-          part.n_owned, part.n_own_tets, part.dimension};
+  return {part.points,
+          part.tets,
+          part.point_ids,
+          part.tet_ids,
+          part.n_owned,
+          part.n_own_tets,
+          part.dimension,
+          part.elements.of_tet,
+          part.elements.vertices,
+          part.lacks_elements};
 }
 
 /// Returns the parts 0 to n_parts - 1. `parts`: the part of every tetrahedron. `halo_layers`: how

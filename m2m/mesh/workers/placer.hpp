@@ -32,7 +32,8 @@ struct PlacerSetup {
   std::vector<FormulaField> fields;
   ArrayProxy<Worker> workers;
   std::int32_t n_parts = 1;
-  bool is_survey = false;  ///< ends with finish_survey(), and builds no parts
+  bool lacks_elements = false;  ///< MeshPart::lacks_elements
+  bool is_survey = false;       ///< ends with finish_survey(), and builds no parts
 };
 
 /// The error with the least key of all PEs, if there is one.

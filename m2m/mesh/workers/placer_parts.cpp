@@ -28,6 +28,7 @@ void Placer::finish() {
 void Placer::build(std::int32_t k, const std::vector<Formula>& formulas, FirstError& error) {
   Draft& part = this->part(k);
   MeshPart& mesh = part.mesh;
+  mesh.lacks_elements = setup_.lacks_elements;
   drop(part.asked);
   if (has_halo()) {
     for (const auto& [id, tet] : part.halo) {

@@ -3,6 +3,7 @@
 #include "m2m/mesh_parts.hpp"
 #include "m2m/read_mesh.hpp"
 #include "runtime/more/testing.hpp"
+#include "tests/m2m/element_meshes.hpp"
 #include "tests/m2m/samples.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/n_seeds.hpp"
@@ -109,6 +110,9 @@ struct ForceCase {
   bool walls_own_ghosts = false, structures_own_ghosts = false;
 
   [[nodiscard]] TetMesh structure() const {
+    if (kind == TransferKind::native)
+      return test::moved_by(test::shaken(test::element_mesh(ElementType::hex8, 3), 0.05), 1.2,
+                            offset);
     return test::moved_by(read_mesh("kuhn:3@0.2"), 1.2, offset);
   }
   [[nodiscard]] TetMesh wall() const { return read_mesh("kuhn:4@0.1"); }
@@ -241,7 +245,8 @@ Vectors forces_on(const Shown& shown) {
 TEST_CASE("a transposed coupling gives the bits of the transposed matrix", "[m2m][transposed]") {
   for (const ForceCase& given :
        {ForceCase{}, ForceCase{.policy = Nearest{}, .offset = 0.1},
-        ForceCase{.kind = TransferKind::nearest}, ForceCase{.kind = TransferKind::second_order}}) {
+        ForceCase{.kind = TransferKind::nearest}, ForceCase{.kind = TransferKind::second_order},
+        ForceCase{.kind = TransferKind::native}}) {
     INFO(name_of(given.kind) << " offset " << given.offset);
     const std::vector<Forces> one = forces(given, 0);
     test::for_seeds(1, 1 + test::n_seeds(8), [&](std::uint64_t seed) {
