@@ -42,8 +42,8 @@
 // the cell, or all cells around the point, `snapped` if it covers them in part, otherwise
 // `outside`.
 //
-// A mesh of triangles or edges (MeshView::dimension) couples likewise, by kinds linear, nearest and
-// projection (guide/surfaces.md).
+// A mesh of triangles or edges (MeshView::dimension) couples likewise, by kinds without
+// gradients (guide/surfaces.md).
 //
 // Nodal forces go back by the transposed rows, so that their sum, and with linear rows that of their
 // moments, stays as it is to rounding. One search serves both:
@@ -87,8 +87,9 @@ struct CouplingOptions {
   TransferKind kind = TransferKind::linear;
   /// A point outside that is at most so far from a cell, in units of the mesh, snaps to the nearest
   /// one. Its value is that of the nearest point there. 0 with kind projection: however far it is.
-  /// Kinds that are not conservative.
+  /// Conservative kinds: how far triangles that overlap may be apart, besides rounding.
   double tolerance = 0;
+  Facing facing = Facing::either;  ///< of triangles, for conservative kinds
   /// Keeps values within those of the vertices of the donor, or of the neighbours. It matters for
   /// points that snap within rounding, whose values extrapolate, for moving least squares, and for
   /// second_order, which then is `limited`. Kinds that are not conservative.

@@ -204,11 +204,12 @@ MeshCensus validate(const TetMesh& mesh);
   return {at(0), at(1), at(2), at(3)};
 }
 
-/// The mean of the corners.
-[[nodiscard]] inline Point mean_of_corners(const std::array<Point, 4>& corners) {
+/// The mean of the corners; of a triangle (dimension 2) that of the first three.
+[[nodiscard]] inline Point mean_of_corners(const std::array<Point, 4>& corners,
+                                           std::int32_t dimension = 3) {
   Point mean{};
-  for (const Point& p : corners)
-    for (std::size_t axis = 0; axis < 3; ++axis) mean[axis] += 0.25 * p[axis];
+  for (std::size_t a = 0; a <= static_cast<std::size_t>(dimension); ++a)
+    for (std::size_t axis = 0; axis < 3; ++axis) mean[axis] += corners[a][axis] / (dimension + 1);
   return mean;
 }
 

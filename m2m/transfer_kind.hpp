@@ -42,16 +42,21 @@ inline constexpr std::array all_transfer_kinds{
 /// The kind of a name. Throws Error (bad_argument) for any other text.
 [[nodiscard]] TransferKind parse_transfer_kind(const std::string& text);
 
-/// Throws Error (bad_argument) if a source whose cells have this dimension (TetMesh::dimension) has no
-/// such kind: walls and lines have kinds linear, nearest, projection and
-/// moving_least_squares.
-void require_dimension(TransferKind kind, std::int32_t dimension);
+/// Throws Error (bad_argument) if there is no such kind from cells of the dimension `source`
+/// (TetMesh::dimension) to those of `target`: kinds with gradients need tetrahedra, and conservative
+/// ones two meshes of tetrahedra, without a tolerance, or two of triangles.
+void require_dimensions(TransferKind kind, double tolerance, std::int32_t source,
+                        std::int32_t target);
 
-/// Conservative kinds integrate over the intersections of tetrahedra; the others give values at
-/// points.
+/// Conservative kinds integrate over the intersections of tetrahedra, or of triangles; the others
+/// give values at points.
 [[nodiscard]] constexpr bool is_conservative(TransferKind kind) noexcept {
   return kind >= TransferKind::conservative;
 }
+
+/// How the normals of triangles that overlap may point: triangles of a file often have any order, and
+/// walls of two bodies that touch face each other.
+enum class Facing : std::uint8_t { either, same, opposite };
 
 /// What the values of a field belong to.
 enum class Centring : std::uint8_t {

@@ -63,8 +63,9 @@ void add_transfer(kit::Driver& driver, Options& options) {
   driver.option("--policy POLICY", options.policies,
                 "value of vertices outside the source: keep, value:V or nearest");
   driver.in(searches);
-  driver.option("--tolerance LENGTH", request.tolerance,
-                "vertices outside the source but nearer than this snap to it");
+  driver.option(
+      "--tolerance LENGTH", request.tolerance,
+      "vertices outside the source but nearer than this snap to it; walls overlap within it");
   driver.flag("--clamp", request.clamp, "keep values within those of the donor's vertices");
   driver.in(runs | Mode::files);
   driver

@@ -60,8 +60,7 @@ TaskOf<CellOutcome> transfer_cells(const TetMesh& source, const std::vector<Fiel
   const CellForm to = is_conservative(options.kind) ? CellForm::constant : CellForm::points;
   choose_coupling(options, from);
   check(options);  // before there are Workers
-  require_dimension(kind, source.dimension);
-  if (is_conservative(kind)) require_dimension(kind, target.dimension);
+  require_dimensions(kind, options.tolerance, source.dimension, target.dimension);
   DistributedMesh give, take;
   co_await epoch([&] {
     give = scatter_cells(source, fields, n_parts, method, from);

@@ -51,9 +51,9 @@ void check(const CouplingOptions& options) {
     fail(ErrorCode::bad_argument, "kind ", name_of(options.kind),
          " looks at no tetrahedron: leave out the tolerance, its points all get values");
   if (is_conservative(options.kind)) {
-    if (options.tolerance > 0 || options.clamp)
+    if (options.clamp)
       fail(ErrorCode::bad_argument, "kind ", name_of(options.kind),
-           " has no donors: tolerance and clamp are for kinds that interpolate");
+           " has no donors: clamp is for kinds that interpolate");
     if (std::holds_alternative<Nearest>(options.policy))
       fail(ErrorCode::bad_argument,
            "a conservative kind has no nearest vertex for what the source does not cover: choose "
@@ -127,6 +127,7 @@ struct AnyCoupling::State {
     setup.policy = options.policy;
     setup.kind = options.kind;
     setup.tolerance = options.tolerance;
+    setup.facing = options.facing;
     setup.clamp = options.clamp;
     setup.order = options.order;
     setup.source_values = options.source_values;
@@ -185,8 +186,8 @@ void AnyCoupling::serialize(Ar& ar) {
   State& state = *state_;
   CouplingOptions& options = state.options;
   ar(state.source, state.target, state.setup, options.voxel_size, options.policy, options.kind,
-     options.tolerance, options.clamp, options.order, options.source_values, options.target_values,
-     state.forth, state.lost);
+     options.tolerance, options.facing, options.clamp, options.order, options.source_values,
+     options.target_values, state.forth, state.lost);
 }
 template void AnyCoupling::serialize(Reader&);
 template void AnyCoupling::serialize(Writer&);

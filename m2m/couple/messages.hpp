@@ -37,6 +37,7 @@ struct CouplingSetup {
   OutsidePolicy policy{};
   TransferKind kind{};
   double tolerance = 0;
+  Facing facing{};
   bool clamp = false;
   std::int32_t order = 1;
   Centring source_values{}, target_values{};

@@ -1,8 +1,6 @@
 #include "m2m/couple/overlap_search.hpp"
 
 #include "collide/hit_receivers.hpp"
-#include "m2m/rows/interpolate/locate.hpp"
-#include "m2m/rows/interpolate/orientation.hpp"
 #include "runtime/core/sort_unique.hpp"
 
 #include <algorithm>
@@ -18,26 +16,21 @@ constexpr double no_coverage = 1e-12;
 /// What is covered to a larger fraction is covered more than once; less is rounding.
 constexpr double over_coverage = 1 + 1e-9;
 
-double volume_of(const MeshView& mesh, const Tet& tet) {
-  const auto c = corners_of(mesh.points, tet);
-  return std::abs(orientation(c[0], c[1], c[2], c[3])) / 6;
-}
-
 }  // namespace
 
 std::vector<Aabb> OverlapSearch::start(const MeshView& mesh) {
   validate(mesh);
-  require_dimension(TransferKind::conservative, mesh.dimension);
+  require_dimensions(TransferKind::conservative, 0, mesh.dimension, mesh.dimension);
   if (to_cells_) {
     numbers_.resize(mesh.own_tets().size());
     std::iota(numbers_.begin(), numbers_.end(), 0);
-    for (const Tet& tet : mesh.own_tets()) volumes_.push_back(volume_of(mesh, tet));
+    for (const Tet& tet : mesh.own_tets()) volumes_.push_back(size_of(mesh, tet));
   } else {
     numbers_ = tets_at_owned(mesh);
     volumes_.assign(mesh.points.size(), 0);
     for (const std::int32_t number : numbers_) {
       const Tet& tet = mesh.tets[static_cast<std::size_t>(number)];
-      for (const VertexId v : tet) volumes_[static_cast<std::size_t>(v)] += volume_of(mesh, tet);
+      for (const VertexId v : tet) volumes_[static_cast<std::size_t>(v)] += size_of(mesh, tet);
     }
   }
   covered_.assign(numbers_.size(), {});
@@ -77,7 +70,7 @@ SearchStep OverlapSearch::next(const CouplingSetup& setup, const MeshView& mesh,
   SearchStep step;
   if (stage_ == Stage::ask) {
     stage_ = Stage::choose;
-    step.queries = queries(setup.id, mesh);
+    step.queries = queries(setup, mesh);
     if (!step.queries.empty()) return step;
   }
   if (stage_ == Stage::choose) {
@@ -103,13 +96,16 @@ std::array<std::uint32_t, 4> OverlapSearch::places_of(const MeshView& mesh,
   return places;
 }
 
-Addressed<SearchQuery> OverlapSearch::queries(CouplingId id, const MeshView& mesh) {
+Addressed<SearchQuery> OverlapSearch::queries(const CouplingSetup& setup, const MeshView& mesh) {
   const std::size_t n_places = to_cells_ ? numbers_.size() : static_cast<std::size_t>(mesh.n_owned);
   Addressed<SearchQuery> out;
   std::vector<std::int32_t> unknown_of(volumes_.size(), -1);
   for (auto& [source, asked] : asked_) {
     sort_unique(asked.boxes);
     TargetTets to;
+    to.dimension = mesh.dimension;
+    to.tolerance = setup.tolerance;
+    to.facing = setup.facing;
     for (auto pair = asked.boxes.begin(); pair != asked.boxes.end();) {
       const std::uint32_t box = pair->first;
       for (const std::uint32_t member : cover_.members_of(box)) {
@@ -142,7 +138,7 @@ Addressed<SearchQuery> OverlapSearch::queries(CouplingId id, const MeshView& mes
       to.unknowns.push_back(unknowns);
     }
     for (const std::uint32_t place : numbered) unknown_of[place] = -1;
-    out.emplace_back(source, SearchQuery{id, {}, std::move(to)});
+    out.emplace_back(source, SearchQuery{setup.id, {}, std::move(to)});
   }
   cover_ = {};
   return out;

@@ -58,7 +58,7 @@ class OverlapSearch {
 
   [[nodiscard]] std::array<std::uint32_t, 4> places_of(const MeshView& mesh,
                                                        std::uint32_t tet) const;
-  [[nodiscard]] Addressed<SearchQuery> queries(CouplingId id, const MeshView& mesh);
+  [[nodiscard]] Addressed<SearchQuery> queries(const CouplingSetup& setup, const MeshView& mesh);
   /// Masses and statuses.
   void finish(const MeshView& mesh, TargetFound& found);
   [[nodiscard]] std::vector<double> covered_fractions(const MeshView& mesh,

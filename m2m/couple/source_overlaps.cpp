@@ -9,6 +9,7 @@ namespace tess::m2m {
 
 OverlapAnswer SourceSide::answer_overlaps(const MeshView& mesh, collide::OwnerId target,
                                           const TargetTets& tets, std::uint64_t& n_tested) {
+  require_dimensions(setup.kind, setup.tolerance, mesh.dimension, tets.dimension);
   OverlapRows found = overlap_rows(mesh, setup.source_values, cover_, tets);
   n_tested += found.n_tested;
   OverlapAnswer answer{std::move(found.tets), std::move(found.covered), {}};

@@ -9,7 +9,7 @@ namespace tess::m2m {
 
 std::vector<Aabb> SourceSide::start_search(const MeshView& mesh) {
   validate(mesh);
-  require_dimension(setup.kind, mesh.dimension);
+  require_dimensions(setup.kind, setup.tolerance, mesh.dimension, mesh.dimension);
   if (setup.kind == TransferKind::native && mesh.lacks_elements)
     fail(
         ErrorCode::bad_argument,

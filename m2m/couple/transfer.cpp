@@ -10,8 +10,7 @@ Transfer::Transfer(const DistributedMesh& source, const DistributedMesh& target,
   TESS_CHECK(source.n_components == target.n_components, "the source has ", source.n_components,
              " components per vertex, the target ", target.n_components,
              "; scatter both meshes with the same number of components");
-  require_dimension(options.kind, source.dimension);
-  if (is_conservative(options.kind)) require_dimension(options.kind, target.dimension);
+  require_dimensions(options.kind, options.tolerance, source.dimension, target.dimension);
   const auto check_halo = [&](const DistributedMesh& mesh, const char* side, std::int32_t layers) {
     TESS_CHECK(mesh.n_parts == 1 || mesh.halo_layers >= layers, "kind ", name_of(options.kind),
                " needs ", layers, " halo layers: scatter the ", side, " with these instead of ",

@@ -31,12 +31,27 @@ const char* name_of(TransferKind kind) noexcept {
   return "";
 }
 
-void require_dimension(TransferKind kind, std::int32_t dimension) {
-  if (dimension == 3 || kind == TransferKind::linear || kind == TransferKind::nearest ||
-      kind == TransferKind::projection || kind == TransferKind::moving_least_squares)
-    return;
-  fail(ErrorCode::bad_argument, "kind ", name_of(kind), " needs tetrahedra; the mesh has ",
-       cells_of(dimension), ": choose linear, nearest or projection");
+void require_dimensions(TransferKind kind, double tolerance, std::int32_t source,
+                        std::int32_t target) {
+  const bool conserves = is_conservative(kind);
+  const bool has_gradients = kind == TransferKind::second_order || kind == TransferKind::limited;
+  for (const std::int32_t dimension : {source, conserves ? target : source}) {
+    if (dimension == 3 || (conserves ? dimension == 2 : !has_gradients)) continue;
+    fail(ErrorCode::bad_argument, "kind ", name_of(kind), " needs tetrahedra",
+         conserves ? " or triangles" : "", "; the mesh has ", cells_of(dimension),
+         ": choose linear, nearest or projection");
+  }
+  if (conserves && source != target)
+    fail(
+        ErrorCode::bad_argument, "kind ", name_of(kind),
+        " needs two meshes of the same cells; the source has ", cells_of(source), ", the target ",
+        cells_of(target),
+        ": take the skin of the tetrahedra (surface.hpp), or choose linear, nearest or projection");
+  if (conserves && source == 3 && tolerance > 0)
+    fail(ErrorCode::bad_argument, "kind ", name_of(kind),
+         " takes a tolerance between triangles only; the meshes have tetrahedra: leave out the "
+         "tolerance ",
+         tolerance);
 }
 
 TransferKind parse_transfer_kind(const std::string& text) {

@@ -37,6 +37,7 @@ refuses "tiny.msh: .* rescale the mesh" "${transfer[@]}" "$scratch/tiny.msh" "$s
 refuses "point.msh: .* rescale the mesh" "${transfer[@]}" "$scratch/point.msh" kuhn:2
 
 refuses missing.exo "${transfer[@]}" "$scratch/missing.exo" kuhn:2
+refuses missing.stl "${transfer[@]}" "$scratch/missing.stl" kuhn:2
 refuses empty.exo "${transfer[@]}" kuhn:2 "$scratch/empty.exo"
 refuses nan.msh "${transfer[@]}" kuhn:2 "$scratch/nan.msh"
 refuses none.msh "${transfer[@]}" "$scratch/none.msh" kuhn:2

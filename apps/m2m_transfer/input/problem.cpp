@@ -143,8 +143,6 @@ void check_kind(TransferKind kind, const Request& request) {
     fail(ErrorCode::bad_argument, option, " is for kinds that interpolate, and ", name_of(kind),
          " has no donors; ", remedy);
   };
-  if (request.tolerance > 0)
-    refuse(text("--tolerance ", request.tolerance), "leave it out, or give another --kind");
   if (request.clamp) refuse("--clamp", "leave it out, or give another --kind");
   if (request.policy == "nearest")
     refuse("--policy nearest", "give keep or value:V, or another --kind");
@@ -185,7 +183,7 @@ void bring_targets(Problem& problem) {
   for (std::size_t m = 0; m < problem.meshes.size(); ++m) {
     if (!is_written(m, problem.pairs)) continue;
     RunMesh& mesh = problem.meshes[m];
-    if (!mesh.mesh) mesh.mesh = read_mesh(mesh.name);
+    if (!mesh.mesh) mesh.mesh = read_mesh_or_surface(mesh.name);
     if (mesh.mesh->n_points() != static_cast<std::size_t>(mesh.survey.n_points))
       fail(ErrorCode::bad_file, mesh.name, ": has ", mesh.mesh->n_points(), " vertices, and had ",
            mesh.survey.n_points, " when the run began; do not write it during a run");

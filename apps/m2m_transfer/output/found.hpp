@@ -46,7 +46,7 @@ namespace m2m_transfer {
 [[nodiscard]] inline std::string overcovered_text(const tess::m2m::Tally& tally) {
   if (tally.n_overcovered == 0) return {};
   return fmt::format(
-      "{} covered more than once, up to {:.6g} times: tetrahedra of the source "
+      "{} covered more than once, up to {:.6g} times: cells of the source "
       "overlap there, and values are wrong",
       tally.n_overcovered, tally.most_covered);
 }

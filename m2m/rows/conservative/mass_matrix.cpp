@@ -1,6 +1,5 @@
 #include "m2m/rows/conservative/mass_matrix.hpp"
 
-#include "m2m/rows/interpolate/locate.hpp"
 #include "m2m/rows/interpolate/orientation.hpp"
 #include "runtime/core/check.hpp"
 
@@ -21,9 +20,15 @@ std::vector<std::int32_t> tets_at_owned(const MeshView& mesh) {
   return numbers;
 }
 
+double size_of(const MeshView& mesh, const Tet& cell) {
+  const auto c = corners_of(mesh.points, cell);
+  return mesh.dimension == 3 ? std::abs(orientation(c[0], c[1], c[2], c[3])) / 6
+                             : measure(c, mesh.dimension);
+}
+
 MassMatrix::MassMatrix(const MeshView& mesh, std::span<const std::int32_t> numbers,
                        std::span<const std::array<double, 4>> covered)
-    : n_points_(mesh.points.size()) {
+    : n_points_(mesh.points.size()), n_corners_(static_cast<std::size_t>(mesh.dimension) + 1) {
   TESS_CHECK(covered.size() == numbers.size(), "expected four loads for each of ", numbers.size(),
              " tetrahedra, got ", covered.size());
   const auto n_owned = static_cast<std::size_t>(mesh.n_owned);
@@ -32,20 +37,21 @@ MassMatrix::MassMatrix(const MeshView& mesh, std::span<const std::int32_t> numbe
   fractions_.assign(n_owned, 0);
   inverse_.assign(n_owned, 0);
   std::vector<double> whole(n_owned, 0);
+  const auto n = static_cast<double>(n_corners_);
   for (std::size_t k = 0; k < numbers.size(); ++k) {
     const Tet& tet = mesh.tets[static_cast<std::size_t>(numbers[k])];
-    const auto corners = corners_of(mesh.points, tet);
-    const double volume = std::abs(orientation(corners[0], corners[1], corners[2], corners[3])) / 6;
+    const double volume = size_of(mesh, tet);
     const std::array<double, 4>& c = covered[k];
-    const double e = *std::min_element(c.begin(), c.end()) / 5;
+    const double e =
+        *std::min_element(c.begin(), c.begin() + static_cast<std::ptrdiff_t>(n_corners_)) / (n + 1);
     tets_.push_back(tet);
     off_diagonal_.push_back(e);
-    for (std::size_t a = 0; a < 4; ++a) {
+    for (std::size_t a = 0; a < n_corners_; ++a) {
       if (tet[a] >= mesh.n_owned) continue;
       const auto v = static_cast<std::size_t>(tet[a]);
       lumped_[v] += c[a];
-      whole[v] += volume / 4;
-      rest_[v] += std::max(c[a] - 5 * e, 0.0);
+      whole[v] += volume / n;
+      rest_[v] += std::max(c[a] - (n + 1) * e, 0.0);
       inverse_[v] += 2 * e;
     }
   }
@@ -65,8 +71,9 @@ void MassMatrix::multiply(std::span<const double> x, std::size_t n_components,
     std::array<std::size_t, 4> row;
     for (std::size_t a = 0; a < 4; ++a) row[a] = static_cast<std::size_t>(tet[a]) * n_components;
     for (std::size_t c = 0; c < n_components; ++c) {
-      const double sum = (x[row[0] + c] + x[row[1] + c]) + (x[row[2] + c] + x[row[3] + c]);
-      for (std::size_t a = 0; a < 4; ++a)
+      const double fourth = n_corners_ < 4 ? 0 : x[row[3] + c];
+      const double sum = (x[row[0] + c] + x[row[1] + c]) + (x[row[2] + c] + fourth);
+      for (std::size_t a = 0; a < n_corners_; ++a)
         if (row[a] < y.size()) y[row[a] + c] += e * (x[row[a] + c] + sum);
     }
   });

@@ -1,11 +1,13 @@
 #include "m2m/rows/conservative/overlap_rows.hpp"
 
 #include "m2m/rows/interpolate/locate.hpp"
+#include "m2m/rows/supermesh/triangles.hpp"
 #include "runtime/core/check.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <type_traits>
 #include <utility>
 
 namespace tess::m2m {
@@ -205,7 +207,9 @@ class BoxList {
   std::vector<std::uint32_t> found_;
 };
 
-/// The tetrahedra of some boxes of the source's cover that are near to a box of the target's.
+/// The tetrahedra of some boxes of the source's cover that are near to a box of the target's; with
+/// TrianglePlane for Planes the triangles, whose boxes may be flat.
+template <class Planes>
 class NearTets {
  public:
   NearTets(const MeshView& source, const Cover& cover, std::span<const std::uint32_t> boxes)
@@ -244,7 +248,8 @@ class NearTets {
       const Corners corners = corners_of(source_.points, source_.tets[s]);
       planes_.emplace_back(corners);
       tets_.push_back(static_cast<std::int32_t>(s));
-      made_.add(collide::box_around(corners));
+      made_.add(std::is_same_v<Planes, TrianglePlane> ? search_box(corners)
+                                                      : collide::box_around(corners));
     }
     made_.pad();
     planes_.resize(made_.size());
@@ -256,10 +261,49 @@ class NearTets {
   const Cover& cover_;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> made_at_;  // per box: its range of made_
   BoxList made_, near_;
-  std::vector<TetPlanes> planes_;   // per box of made_
+  std::vector<Planes> planes_;      // per box of made_
   std::vector<std::int32_t> tets_;  // likewise
   std::vector<std::uint32_t> at_;   // per box of near_: that of made_
 };
+
+/// Triangles that overlap may be apart by the tolerance, and by rounding.
+Aabb widened(const Aabb& box, const TargetTets& target) {
+  return target.dimension == 3 ? box : padded(box, target.tolerance);
+}
+
+template <class Planes, class Cutter>
+OverlapRows cut_rows(const MeshView& source, Centring centring, const Cover& cover,
+                     const TargetTets& target, Cutter pairs) {
+  OverlapRows out;
+  RowBuilder rows(source, centring, target.n_rows, target.tets.size());
+  NearTets<Planes> near(source, cover, target.near);
+  for (std::size_t b = 0; b + 1 < target.first.size(); ++b) {
+    Aabb around = collide::no_box<double, 3>();
+    for (std::uint32_t t = target.first[b]; t < target.first[b + 1]; ++t)
+      for (const Point& corner : target.tets[t]) grow(around, corner);
+    near.collect(
+        std::span(target.near)
+            .subspan(target.first_near[b], target.first_near[b + 1] - target.first_near[b]),
+        widened(around, target));
+    for (std::uint32_t t = target.first[b]; t < target.first[b + 1]; ++t) {
+      const Planes planes(target.tets[t]);
+      near.visit(widened(collide::box_around(target.tets[t]), target),
+                 [&](std::int32_t s, const Planes& by) { pairs.add(by, planes, s); });
+      out.n_tested += pairs.size();
+      const std::array<std::uint32_t, 4>& unknowns = target.unknowns[t];
+      Four quanta;
+      for (std::size_t c = 0; c < 4; ++c) quanta[c] = target.quanta[unknowns[c]];
+      pairs.cut(
+          [&](std::int32_t s, const PairMoments& moments) { rows.add(s, moments.mixed, quanta); });
+      const std::array<double, 4> covered = rows.end_tet(unknowns);
+      if (covered == std::array<double, 4>{}) continue;
+      out.tets.push_back(t);
+      out.covered.push_back(covered);
+    }
+  }
+  out.rows = rows.take();
+  return out;
+}
 
 }  // namespace
 
@@ -286,36 +330,12 @@ GlobalId id_of_unknown(const MeshView& mesh, Centring centring, VertexId unknown
 
 OverlapRows overlap_rows(const MeshView& source, Centring centring, const Cover& cover,
                          const TargetTets& target) {
-  OverlapRows out;
-  RowBuilder rows(source, centring, target.n_rows, target.tets.size());
-  NearTets near(source, cover, target.near);
-  PairCutter pairs;
-  for (std::size_t b = 0; b + 1 < target.first.size(); ++b) {
-    Aabb around = collide::no_box<double, 3>();
-    for (std::uint32_t t = target.first[b]; t < target.first[b + 1]; ++t)
-      for (const Point& corner : target.tets[t]) grow(around, corner);
-    near.collect(
-        std::span(target.near)
-            .subspan(target.first_near[b], target.first_near[b + 1] - target.first_near[b]),
-        around);
-    for (std::uint32_t t = target.first[b]; t < target.first[b + 1]; ++t) {
-      const TetPlanes planes(target.tets[t]);
-      near.visit(collide::box_around(target.tets[t]),
-                 [&](std::int32_t s, const TetPlanes& by) { pairs.add(by, planes, s); });
-      out.n_tested += pairs.size();
-      const std::array<std::uint32_t, 4>& unknowns = target.unknowns[t];
-      Four quanta;
-      for (std::size_t c = 0; c < 4; ++c) quanta[c] = target.quanta[unknowns[c]];
-      pairs.cut(
-          [&](std::int32_t s, const PairMoments& moments) { rows.add(s, moments.mixed, quanta); });
-      const std::array<double, 4> covered = rows.end_tet(unknowns);
-      if (covered == std::array<double, 4>{}) continue;
-      out.tets.push_back(t);
-      out.covered.push_back(covered);
-    }
-  }
-  out.rows = rows.take();
-  return out;
+  TESS_CHECK(source.dimension == target.dimension, "cells of the dimensions ", source.dimension,
+             " and ", target.dimension, " have no overlap");
+  if (target.dimension == 3)
+    return cut_rows<TetPlanes>(source, centring, cover, target, PairCutter{});
+  return cut_rows<TrianglePlane>(source, centring, cover, target,
+                                 TriangleCutter(target.tolerance, target.facing));
 }
 
 }  // namespace tess::m2m

@@ -1,5 +1,5 @@
 // Rows that integrate a source field against the basis functions of a target over the overlaps of
-// their tetrahedra (the supermesh): the right-hand sides of a conservative transfer,
+// their tetrahedra, or of their triangles (the supermesh): the right-hand sides of a conservative transfer,
 //
 //     load_i = integral of u_source psi_i = sum over a of w_ia u_a,
 //     w_ia = sum over source tetrahedra S and target tetrahedra T of (integral over S ∩ T of phi_a psi_i) .
@@ -27,7 +27,7 @@ namespace tess::m2m {
 /// The quantum of a target unknown; `volume`: of all tetrahedra around the point, or of the cell.
 [[nodiscard]] double quantum_of(double volume);
 
-/// Target tetrahedra in boxes, and the boxes of the source's cover that are near to each box.
+/// Target tetrahedra or triangles in boxes, and the boxes of the source's cover that are near to each box.
 struct TargetTets {
   std::vector<Corners> tets;
   std::vector<std::array<std::uint32_t, 4>> unknowns;  ///< per corner; those of a cell are equal
@@ -36,6 +36,9 @@ struct TargetTets {
   std::vector<std::uint32_t> first{0};  ///< per box, and the end: its first tetrahedron
   std::vector<std::uint32_t> near{};    ///< boxes of the source's cover
   std::vector<std::uint32_t> first_near{0};
+  std::int32_t dimension = 3;
+  double tolerance = 0;  ///< how far triangles that overlap may be apart
+  Facing facing{};       ///< of these
 };
 
 struct OverlapRows {

@@ -103,8 +103,8 @@ void Projection::for_each_flux(const MassMatrix& mass, const Visit& visit) const
     for (std::size_t c = 0; c < n_; ++c) {
       Weights u, flux{};
       for (std::size_t a = 0; a < 4; ++a) u[a] = x_[static_cast<std::size_t>(tet[a]) * n_ + c];
-      for (std::size_t a = 0; a < 4; ++a) {
-        for (std::size_t b = a + 1; b < 4; ++b) {
+      for (std::size_t a = 0; a < mass.n_corners(); ++a) {
+        for (std::size_t b = a + 1; b < mass.n_corners(); ++b) {
           const double f = e * (u[a] - u[b]);
           flux[a] += f;
           flux[b] -= f;

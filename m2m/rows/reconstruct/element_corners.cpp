@@ -26,7 +26,7 @@ struct Elements {
   }
 };
 
-/// The mean over the volume; of the tetrahedra if they have none.
+/// The mean over the volume or area; of the cells if they have none.
 Point centroid_of(const MeshView& mesh, std::span<const std::size_t> tets) {
   const Point origin = mesh.points[static_cast<std::size_t>(mesh.tets[tets.front()][0])];
   double largest = 0;
@@ -41,8 +41,8 @@ Point centroid_of(const MeshView& mesh, std::span<const std::size_t> tets) {
   for (const std::size_t t : tets) {
     std::array<Point, 4> corners = corners_of(mesh.points, mesh.tets[t]);
     for (Point& p : corners) p = difference(p, origin);
-    const double v = std::abs(signed_volume(corners));
-    const Point mean = mean_of_corners(corners);
+    const double v = measure(corners, mesh.dimension);
+    const Point mean = mean_of_corners(corners, mesh.dimension);
     volume += v;
     for (std::size_t k = 0; k < 3; ++k) {
       sum[k] += v * std::ldexp(mean[k], -exponent);

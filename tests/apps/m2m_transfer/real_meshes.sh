@@ -45,6 +45,18 @@ for source in "${readable[@]}"; do
     fi
   done
 done
+# Side sets of ExodusII and physical groups of gmsh, by name.
+cube=("$data/mfem/simple-cube-tet4.e" "$data/mfem/simple-cube-hex8.e")
+"$bin/m2m_transfer" "${cube[@]}" --source-part bottom --target-part bottom --field linear --json "$scratch/part.json" >"$scratch/out" 2>&1 &&
+  asserts "$scratch/part.json" "p['outside'] == 0 and p['linf_found'] < 1e-12" && pass || fail "bottom: $(tail -1 "$scratch/out")"
+"$bin/m2m_transfer" "$data/skfem/box.msh" "$data/skfem/box.msh" --source-part front --target-part front --field gaussian --json "$scratch/part.json" \
+  >"$scratch/out" 2>&1 && asserts "$scratch/part.json" "p['outside'] == 0 and p['l2'] == 0" && pass || fail "front: $(tail -1 "$scratch/out")"
+"$bin/m2m_transfer" "${cube[@]}" --source-part botom >"$scratch/out" 2>&1
+[[ $? -eq 2 && $(wc -l <"$scratch/out") -eq 1 ]] && grep -q "no part 'botom': there are bottom, top (side sets)" "$scratch/out" &&
+  pass || fail "botom: $(cat "$scratch/out")"
+"$bin/m2m_transfer" "$data/spot/spot.obj" "$data/spot/spot.obj" --kind projection --json "$scratch/part.json" >"$scratch/out" 2>&1 &&
+  asserts "$scratch/part.json" "p['boundary'] == p['targets'] == 2930 and p['l2'] == 0" && pass || fail "spot.obj: $(tail -1 "$scratch/out")"
+
 echo "${#readable[@]} meshes onto themselves, $pairs pairs"
 
 finish

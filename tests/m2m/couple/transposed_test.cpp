@@ -2,6 +2,7 @@
 #include "m2m/coupling_weights.hpp"
 #include "m2m/mesh_parts.hpp"
 #include "m2m/read_mesh.hpp"
+#include "m2m/surface.hpp"
 #include "runtime/more/testing.hpp"
 #include "tests/m2m/element_meshes.hpp"
 #include "tests/m2m/samples.hpp"
@@ -101,6 +102,7 @@ class Body : public Chare<Body, Index1>, public Piece<Body> {
   Vectors velocity_;  // per point owned
 };
 
+/// With kind projection both bodies are walls.
 struct ForceCase {
   TransferKind kind = TransferKind::linear;
   OutsidePolicy policy{};
@@ -113,9 +115,14 @@ struct ForceCase {
     if (kind == TransferKind::native)
       return test::moved_by(test::shaken(test::element_mesh(ElementType::hex8, 3), 0.05), 1.2,
                             offset);
-    return test::moved_by(read_mesh("kuhn:3@0.2"), 1.2, offset);
+    return part(test::moved_by(read_mesh("kuhn:3@0.2"), 1.2, offset));
   }
-  [[nodiscard]] TetMesh wall() const { return read_mesh("kuhn:4@0.1"); }
+  [[nodiscard]] TetMesh wall() const { return part(read_mesh("kuhn:4@0.1")); }
+
+ private:
+  [[nodiscard]] TetMesh part(TetMesh mesh) const {
+    return kind == TransferKind::projection ? skin_of(mesh).mesh : mesh;
+  }
 };
 
 ArrayProxy<Body> bodies(const TetMesh& mesh, std::int32_t n, bool owns_ghosts) {
@@ -245,8 +252,8 @@ Vectors forces_on(const Shown& shown) {
 TEST_CASE("a transposed coupling gives the bits of the transposed matrix", "[m2m][transposed]") {
   for (const ForceCase& given :
        {ForceCase{}, ForceCase{.policy = Nearest{}, .offset = 0.1},
-        ForceCase{.kind = TransferKind::nearest}, ForceCase{.kind = TransferKind::second_order},
-        ForceCase{.kind = TransferKind::native}}) {
+        ForceCase{.kind = TransferKind::nearest}, ForceCase{.kind = TransferKind::projection},
+        ForceCase{.kind = TransferKind::second_order}, ForceCase{.kind = TransferKind::native}}) {
     INFO(name_of(given.kind) << " offset " << given.offset);
     const std::vector<Forces> one = forces(given, 0);
     test::for_seeds(1, 1 + test::n_seeds(8), [&](std::uint64_t seed) {
@@ -270,6 +277,39 @@ TEST_CASE("sums of forces and moments stay over 100 round trips", "[m2m][transpo
   machine.run([&] { return round_trips(worst_sum); }).require_success();
   CHECK(worst_sum < 1e-12);
   CHECK(worst_sum > 0);
+}
+
+TEST_CASE("forces at the feet of a projection keep their sum, and moments but for the gap",
+          "[m2m][transposed]") {
+  const Forces of =
+      forces({.kind = TransferKind::projection, .n_structures = 3, .n_walls = 4}, 2).front();
+  const Rows<double>& rows = of.weights.rows;
+  std::array<long double, 6> sum{};
+  long double magnitude = 0, widest = 0;
+  const auto add = [&](const Point& at, const Point& force, int sign) {
+    const Point moment = cross(at, force);
+    for (std::size_t k = 0; k < 3; ++k) {
+      sum[k] += sign * force[k];
+      sum[3 + k] += sign * moment[k];
+      magnitude += std::abs(force[k]);
+    }
+  };
+  for (const auto& [id, row] : of.structure) add(row[0], row[2], 1);
+  for (std::size_t t = 0; t < of.wall.size(); ++t) {
+    const auto& [at, force, taken] = of.wall[t].second;
+    Point foot{};
+    for (std::uint64_t k = rows.begin[t]; k < rows.begin[t + 1]; ++k)
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        foot[axis] += rows.weights[k] *
+                      of.structure[static_cast<std::size_t>(rows.columns[k])].second[0][axis];
+    widest = std::max<long double>(widest, collide::length(difference(foot, at)));
+    add(at, force, -1);
+    const Point change = cross(difference(foot, at), force);
+    for (std::size_t k = 0; k < 3; ++k) sum[3 + k] -= change[k];
+  }
+  CHECK(widest > 0.05);
+  CHECK(of.tally.n_lost == 0);
+  for (const long double s : sum) CHECK(double(std::abs(s) / magnitude) < 1e-13);
 }
 
 TEST_CASE("forces of points without a donor are refused, or counted", "[m2m][transposed]") {

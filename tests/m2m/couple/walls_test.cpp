@@ -1,66 +1,30 @@
 // Couplings whose source or target is a wall, a plane mesh or a line: orders, and the same bits for
 // any number of pieces and any schedule.
-#include "tests/m2m/walls.hpp"
-
 #include "apps/kit/worst.hpp"
 #include "m2m/cell_transfer.hpp"
 #include "m2m/kuhn.hpp"
 #include "m2m/mesh_piece.hpp"
 #include "m2m/placement.hpp"
+#include "m2m/read_mesh.hpp"
 #include "m2m/rows/interpolate/locate.hpp"
-#include "m2m/transfer.hpp"
-#include "runtime/more/testing.hpp"
-#include "tests/m2m/gathered.hpp"
+#include "m2m/surface.hpp"
+#include "tests/m2m/wall_transfers.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/n_seeds.hpp"
 #include "tests/support/run.hpp"
+#include "tests/support/shared_data.hpp"
 
 #include <cmath>
+#include <filesystem>
 #include <fmt/format.h>
+#include <numeric>
 
 using namespace tess;
 using namespace tess::m2m;
 using tess::test::Wall;
-using tess::test::wall_mesh;
+using tess::test::wall_mesh, tess::test::WallCase, tess::test::WallResult, tess::test::result_of;
 
 namespace {
-
-double smooth(const Point& p) {
-  return std::sin(2 * p[0]) * std::cos(p[1]) + p[2] * p[2];
-}
-
-struct WallCase {
-  TetMesh from, to;
-  TransferOptions options{};
-  std::int32_t n_parts = 1;
-  double (*field)(const Point&) = &smooth;
-};
-struct WallResult {
-  Outcome outcome;
-  Tally tally;
-};
-
-Task run_case(const WallCase& c, WallResult& result) {
-  Field field{"f", 1, {}};
-  for (const Point& p : c.from.points) field.values.push_back(c.field(p));
-  DistributedMesh source, target;
-  co_await epoch([&] {
-    source = scatter(c.from, {field}, c.n_parts, PartitionMethod::curve);
-    target = scatter(c.to, {{"f", 1, std::vector<double>(c.to.n_points(), -7.0)}}, c.n_parts + 1,
-                     PartitionMethod::curve);
-  });
-  Transfer transfer(source, target, c.options);
-  for (int k = 0; k < 3; ++k)  // the third keeps what the source has found of itself
-    result.tally = (co_await transfer.search()).tally;
-  co_await transfer.apply();
-  result.outcome = co_await test::gathered(target);
-}
-WallResult result_of(const WallCase& c, std::uint64_t seed = 1) {
-  const test::Machine machine{.pes = 1 << (seed % 3), .seed = seed};
-  WallResult result;
-  machine.run([&] { return run_case(c, result); }).require_success();
-  return result;
-}
 
 struct Errors {
   double largest = 0, squares = 0;
@@ -82,12 +46,6 @@ double order_of(Wall wall, const TransferOptions& options) {
     return errors_of({wall_mesh(wall, n), to, options, 2}).squares;
   };
   return 0.5 * std::log2(error(8) / error(16));
-}
-
-void check_same(const WallResult& a, const WallResult& b) {
-  test::expect(a.outcome.values == b.outcome.values, "values");
-  test::expect(a.outcome.status == b.outcome.status, "status");
-  test::expect(a.outcome.distance == b.outcome.distance, "distances");
 }
 
 /// Shows the side of its points.
@@ -170,6 +128,9 @@ TEST_CASE("the error of each kind on a wall falls with its order", "[m2m][walls]
     CHECK((nearest > 0.6 && nearest < 1.4));
     CHECK((projection > 1.7 && projection < 2.4));
     CHECK(linear == projection);
+    const double fit = order_of(wall, {.kind = TransferKind::moving_least_squares});
+    CAPTURE(fit);
+    CHECK((fit > 1.6 && fit < 2.7));
   }
 }
 
@@ -180,6 +141,9 @@ TEST_CASE("a linear field on a plane mesh or a line is exact, without a toleranc
   CHECK(errors_of(plane).largest < 1e-12);
   const WallResult result = result_of(plane);
   CHECK(result.tally.count(Status::outside) == 0);
+  plane.options.kind = TransferKind::moving_least_squares;
+  CHECK(errors_of(plane).largest < 1e-12);
+  CHECK(result_of(plane).tally.n_lower_dimension == plane.to.n_points());
   TetMesh line;
   line.dimension = 1;
   for (int i = 0; i <= 10; ++i) line.points.push_back({0.1 * i, 0.2 * i, 0.3});
@@ -202,12 +166,13 @@ TEST_CASE("a wall gives the same bits for any number of pieces and any schedule"
        {TransferOptions{.kind = TransferKind::projection},
         TransferOptions{.kind = TransferKind::projection, .tolerance = 0.05},
         TransferOptions{.policy = Nearest{}, .tolerance = 0.02},
-        TransferOptions{.policy = UseValue{3}}, TransferOptions{.kind = TransferKind::nearest}}) {
+        TransferOptions{.policy = UseValue{3}}, TransferOptions{.kind = TransferKind::nearest},
+        TransferOptions{.kind = TransferKind::moving_least_squares}}) {
     const WallResult one = result_of({from, to, options, 1});
     CHECK(one.tally.n_kept_sources == 1);
     test::for_seeds(2, 2 + test::n_seeds(6), [&](std::uint64_t seed) {
-      check_same(result_of({from, to, options, static_cast<std::int32_t>(1 + seed * 5 % 12)}, seed),
-                 one);
+      test::check_same(
+          result_of({from, to, options, static_cast<std::int32_t>(1 + seed * 5 % 12)}, seed), one);
     });
   }
 }
@@ -252,7 +217,7 @@ TEST_CASE("a wall takes from a volume, and a volume from a wall", "[m2m][walls]"
   test::for_seeds(1, 1 + test::n_seeds(4), [&](std::uint64_t seed) {
     WallCase cut = c;
     cut.n_parts = static_cast<std::int32_t>(seed % 4 * 3 + 1);
-    check_same(result_of(cut, seed), result);
+    test::check_same(result_of(cut, seed), result);
   });
   const WallResult back = result_of({inner, kuhn_mesh({3}), {.kind = TransferKind::projection}, 2});
   CHECK(back.tally.count(Status::outside) == 0);
@@ -296,13 +261,11 @@ TEST_CASE("kinds that a wall does not have are refused in one line", "[m2m][wall
   const auto complaint = [](const TetMesh& from, const TetMesh& to, TransferKind kind) {
     WallResult result;
     const WallCase c{from, to, {.kind = kind}};
-    return tests::error_of("pes=2,cost=100ns", [&] { return run_case(c, result); });
+    return tests::error_of("pes=2,cost=100ns", [&] { return test::run_case(c, result); });
   };
   using Catch::Matchers::Contains;
   for (const TransferKind kind : {TransferKind::second_order, TransferKind::limited})
     CHECK_THAT(complaint(wall, box, kind), Contains("needs tetrahedra; the mesh has triangles"));
-  CHECK_THAT(complaint(box, wall, TransferKind::conservative),
-             Contains("kind conservative needs tetrahedra; the mesh has triangles"));
   CellOutcome out;
   CHECK_THAT(
       tests::error_of("pes=2,cost=100ns",
@@ -328,6 +291,41 @@ TEST_CASE("a mesh of triangles is checked as such", "[m2m][walls]") {
   CHECK(validate(wall).n_flat == 0);
   wall.dimension = 4;
   CHECK_THROWS_WITH(validate(wall), Catch::Matchers::Contains("has the dimension 4"));
+}
+
+TEST_CASE("skins of real meshes onto each other count every point, with the same bits",
+          "[m2m][walls][.][shared_data]") {
+  std::vector<std::string> files;
+  for (const char* folder : {"nalu", "mfem", "skfem"})
+    for (const auto& file : std::filesystem::directory_iterator(test::shared_data(folder)))
+      if (const auto ending = file.path().extension();
+          ending == ".e" || ending == ".exo" || ending == ".msh")
+        files.push_back(file.path());
+  std::sort(files.begin(), files.end());
+  std::vector<TetMesh> skins;
+  for (const std::string& file : files) try {
+      skins.push_back(skin_of(read_mesh(file)).mesh);
+    } catch (const Error&) {  // elements that are not supported
+    }
+  CHECK(skins.size() >= 15);
+  std::uint64_t n_near = 0, n_far = 0;
+  for (const TetMesh& from : skins)
+    for (const TetMesh& to : skins) {
+      INFO(from.name << " -> " << to.name);
+      const Aabb box = bounds(from);
+      const double size = collide::length(difference(box.hi, box.lo));
+      WallCase c{from, to, {.kind = TransferKind::projection, .tolerance = 0.1 * size}, 1};
+      const WallResult alone = result_of(c, 0);  // on one PE
+      c.n_parts = 5;
+      test::check_same(result_of(c, 2), alone);  // on four
+      const std::uint64_t n_outside = alone.tally.count(Status::outside);
+      CHECK(std::accumulate(alone.tally.counts.begin(), alone.tally.counts.end(), n_outside * 0) ==
+            to.n_points());
+      if (&from == &to) CHECK(alone.tally.count(Status::boundary) == to.n_points());
+      n_far += n_outside;
+      n_near += to.n_points() - n_outside;
+    }
+  CHECK((n_near > 0 && n_far > 0));
 }
 
 TEST_CASE("time of a search and an application between walls", "[.][benchmark][walls]") {
