@@ -20,6 +20,7 @@ if("m2m" IN_LIST TESS_COMPONENTS)
   find_package(ExodusII REQUIRED)
   find_package(ZLIB REQUIRED)
   find_package(Zoltan REQUIRED)
+  find_package(Eigen3 3.4 REQUIRED NO_MODULE)  # while building only, of one source: it has no library
 endif()
 if(TESS_APPS AND TESS_TESTS)
   find_package(Catch2 2.13 REQUIRED)

@@ -15,7 +15,7 @@ build=(
   g++-12 cmake ninja-build git pkg-config
   openmpi-bin libopenmpi-dev libhwloc-dev libboost1.81-dev
   libfmt-dev nlohmann-json3-dev
-  libexodusii-dev libtrilinos-zoltan-dev libscotch-dev zlib1g-dev libbrotli-dev
+  libexodusii-dev libtrilinos-zoltan-dev libscotch-dev libeigen3-dev zlib1g-dev libbrotli-dev
 )
 meshes=(gmsh gnuplot-nox)
 tests=(clang-format-16 clang-tidy catch2)

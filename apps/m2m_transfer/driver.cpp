@@ -5,6 +5,7 @@
 #include "apps/m2m_transfer/output/transfer.hpp"
 #include "apps/m2m_transfer/result_format.hpp"
 #include "apps/m2m_transfer/run/measure.hpp"
+#include "apps/m2m_transfer/run/reference.hpp"
 #include "apps/m2m_transfer/study/drift.hpp"
 #include "apps/m2m_transfer/study/pes.hpp"
 #include "apps/m2m_transfer/study/steps.hpp"
@@ -101,6 +102,14 @@ void explain_to_user(kit::Driver& driver, const std::string& text) {
   print(text);
 }
 
+/// Appends a report of --reference, if it is given.
+Task add_reference(const Options& options, const Problem& problem, kit::Progress& progress,
+                   Reports& reports) {
+  if (options.reference.empty()) co_return;
+  progress.phase("reference");
+  reports.push_back(co_await measure_reference(problem));
+}
+
 Task transfer_once(const Options& options, kit::Driver& driver) {
   Request request = options.request;
   request.repeat = options.repeat.value_or(1);
@@ -116,15 +125,18 @@ Task transfer_once(const Options& options, kit::Driver& driver) {
   problem.collects = writes_whole || !options.picture.empty();
   explain_to_user(driver, explain(problem, out.empty() ? Output::report : Output::mesh));
   co_await measure(problem, create<Gauge>(each_pe), driver.progress());
+  Reports reports = problem.reports;
+  co_await add_reference(options, problem, driver.progress(), reports);
   driver.progress().phase("writing");
   if (problem.collects) bring_targets(problem);
-  write_reports(driver, problem.reports);
+  write_reports(driver, reports);
   if (!options.picture.empty()) kit::write_file(options.picture, picture(problem));
   if (writes_whole) write_meshes(out, problem);
   driver.progress().clear();
   std::string text;
   for (const TransferReport& report : problem.reports) text += table(report);
   print(text + legend());
+  if (!options.reference.empty()) print(field_rows().table(rows_of(reports)));
 }
 
 /// Every kind, one after the other, from the same meshes and fields.
@@ -143,7 +155,8 @@ Task transfer_all_kinds(const Options& options, kit::Driver& driver) {
     for (TransferReport& report : problem.reports) report.kind = name_of(kind);
     explain_to_user(driver, text(name_of(kind), ": ", explain(problem, Output::report)));
     co_await measure(problem, gauge, driver.progress());
-    for (TransferReport& report : problem.reports) reports.push_back(std::move(report));
+    reports.insert(reports.end(), problem.reports.begin(), problem.reports.end());
+    if (kind == kinds.back()) co_await add_reference(options, problem, driver.progress(), reports);
   }
   write_reports(driver, reports);
   driver.progress().clear();
@@ -178,6 +191,8 @@ Task run_study(const Options& options, kit::Driver& driver) {
     explain_to_user(driver, explain(problem, Output::report));
     co_await measure(problem, gauge, driver.progress());
     reports.push_back(problem.reports.front());
+    if (request.kind == kinds.back() && request.policy == options.policies.back())
+      co_await add_reference(options, problem, driver.progress(), reports);
   }
   driver.progress().clear();
   const std::vector<FieldRow> rows = rows_of(reports);

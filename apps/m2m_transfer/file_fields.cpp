@@ -236,48 +236,66 @@ struct Run {
   const TetMesh &source, &target;
   TransferOptions options{};
   WeightMatrix matrix{};
+};
+
+/// The fields of a batch at the points of a target, before and after a transfer.
+struct Arrival {
+  const TetMesh& mesh;
+  std::vector<Field> values{};
   std::vector<Status> status{};  // after a search
 };
 
-/// A search and one application of all fields.
-Task transfer_batch(Run& run, const Batch& batch, std::vector<Field>& values,
-                    FileFieldsReport& report) {
-  const TransferKind kind = run.options.kind;
-  const PartitionMethod method = parse_partition_method(run.request.partition);
-  DistributedMesh source, target;
+/// A search and one application of all fields. Gives what was found, and the weights if `matrix` is
+/// not null.
+TaskOf<SearchSummary> transfer_to(const Run& run, DistributedMesh source, Arrival& to,
+                                  std::int32_t n_parts, WeightMatrix* matrix) {
+  DistributedMesh target;
   co_await epoch([&] {
-    source = scatter(run.source, batch.vertices.fields, run.request.chares(), method,
-                     source_halo_layers(kind));
-    target = scatter(run.target, values, run.request.chares(), method, target_halo_layers(kind));
+    target = scatter(to.mesh, to.values, n_parts, parse_partition_method(run.request.partition),
+                     target_halo_layers(run.options.kind));
   });
   Transfer transfer(source, target, run.options);
   const SearchSummary found = co_await transfer.search();
-  if (!report.searched) {
-    report.tally = found.tally;
-    report.worst = found.worst;
-    if (!run.request.weights.empty())
-      run.matrix =
-          co_await collect_weights(transfer, static_cast<std::int64_t>(run.source.n_points()),
-                                   static_cast<std::int64_t>(run.target.n_points()));
-  }
-  report.searched = true;
+  if (matrix != nullptr)
+    *matrix = co_await collect_weights(transfer, static_cast<std::int64_t>(run.source.n_points()),
+                                       static_cast<std::int64_t>(to.mesh.n_points()));
   co_await transfer.apply();
   const Outcome all = co_await target.workers.reduce<&Worker::gather>();
-  run.status.resize(run.target.n_points());
+  to.status.resize(to.mesh.n_points());
   const double* row = all.values.data();
   for (std::size_t i = 0; i < all.points.size(); ++i) {
     const auto vertex = static_cast<std::size_t>(all.points[i]);
-    run.status[vertex] = all.status[i];
-    for (Field& field : values) {
+    to.status[vertex] = all.status[i];
+    for (Field& field : to.values) {
       std::copy_n(row, field.n_components, field.values.data() + vertex * field.n_components);
       row += field.n_components;
     }
   }
   co_await epoch([&] { transfer.destroy(); });
+  co_await epoch([&] { target.destroy(); });
+  co_return found;
+}
+
+/// Moves a batch to the target and to the points that are watched.
+Task transfer_batch(Run& run, const Batch& batch, Arrival& target, Arrival& watched,
+                    FileFieldsReport& report) {
+  const FileFieldsRequest& request = run.request;
+  DistributedMesh source;
   co_await epoch([&] {
-    source.destroy();
-    target.destroy();
+    source =
+        scatter(run.source, batch.vertices.fields, request.chares(),
+                parse_partition_method(request.partition), source_halo_layers(run.options.kind));
   });
+  const bool is_first = !std::exchange(report.searched, true);
+  const bool has_weights = is_first && !request.weights.empty();
+  const SearchSummary found = co_await transfer_to(run, source, target, request.chares(),
+                                                   has_weights ? &run.matrix : nullptr);
+  if (is_first) {
+    report.tally = found.tally;
+    report.worst = found.worst;
+  }
+  if (!request.watch.empty()) co_await transfer_to(run, source, watched, 1, nullptr);
+  co_await epoch([&] { source.destroy(); });
 }
 
 /// The same by weights, on this PE.
@@ -323,6 +341,12 @@ void read_matrix(Run& run, FileFieldsReport& report) {
 }
 
 void check_options(const FileFieldsRequest& request) {
+  if (!request.watch.empty() && !request.from_weights.empty())
+    tess::refuse_together("--watch", "--from-weights, which holds no weights of its points");
+  if (!request.watch.empty() && is_conservative(parse_transfer_kind(request.kind)))
+    fail(ErrorCode::bad_argument, "--watch takes values at points, and kind ", request.kind,
+         " gives them to cells; choose another --kind");
+  kit::require_writable("--watch-file", request.watch_file);
   if (!request.weights.empty()) require_weights(parse_transfer_kind(request.kind), request.clamp);
   kit::require_writable("--weights", request.weights);
   kit::require_writable("--out", request.out);
@@ -387,6 +411,7 @@ TaskOf<FileFieldsReport> move_file_fields(const FileFieldsRequest& request,
   run.options.kind = parse_transfer_kind(request.kind);
   run.options.tolerance = request.tolerance;
   run.options.clamp = request.clamp;
+  run.options.order = request.order;
   run.options.voxel_size = {request.voxel, request.voxel, request.voxel};
   const std::function<void(const char*)> on_phase = [&progress](const char* name) {
     progress.phase(name);
@@ -425,6 +450,10 @@ TaskOf<FileFieldsReport> move_file_fields(const FileFieldsRequest& request,
          "weights are of values at vertices, and --fields names a field in elements; leave it out, "
          "or --weights and --from-weights");
   if (!request.from_weights.empty()) read_matrix(run, report);
+  const TetMesh watched = watch_points(request.watch);
+  if (fields.has(FieldPlace::tets) && !request.watch.empty())
+    fail(ErrorCode::bad_argument,
+         "--watch takes values at vertices, and --fields names a field in elements; leave it out");
   ResultFile out(request.out, run.target);
   for (int step = 1; step < request.steps; ++step) motion.move(moving);
   for (std::size_t next = 0; next < fields.steps().size();) {
@@ -433,12 +462,13 @@ TaskOf<FileFieldsReport> move_file_fields(const FileFieldsRequest& request,
     motion.turn(batch.vertices.fields);
     motion.turn(batch.cells.fields);
     if (report.fields.empty()) name_fields(batch, report);
-    std::vector<Field> values = start_values(batch.vertices.fields, run.target.n_points());
+    Arrival to{run.target, start_values(batch.vertices.fields, run.target.n_points())};
+    Arrival there{watched, start_values(batch.vertices.fields, watched.n_points())};
     if (!request.from_weights.empty()) {
       progress.phase("apply");
-      apply_batch(run, batch, values);
+      apply_batch(run, batch, to.values);
     } else if (fields.has(FieldPlace::vertices)) {
-      co_await transfer_batch(run, batch, values, report);
+      co_await transfer_batch(run, batch, to, there, report);
     }
     CellOutcome cells;
     if (fields.has(FieldPlace::tets)) {
@@ -448,19 +478,23 @@ TaskOf<FileFieldsReport> move_file_fields(const FileFieldsRequest& request,
     }
     progress.phase("writing");
     for (std::size_t k = 0; k < batch.steps.size(); ++k) {
-      std::vector<Field> result = batch.vertices.of_step(values, k);
+      std::vector<Field> result = batch.vertices.of_step(to.values, k);
       std::vector<Field> in_cells = batch.cells.of_step(cells.fields, k);
       const double time = fields.time_of(batch.steps[k]);
       MovedStep step{batch.steps[k], time, 0, 0, result_hash({})};
       add_result(result, step.result_hash, step.n_nan);
       add_result(in_cells, step.result_hash, step.n_nan_cells);
       report.steps.push_back(step);
-      if (!run.status.empty()) result.push_back(status_field(run.status, result));
+      add_watched(report.watched, time, watched, batch.vertices.of_step(there.values, k),
+                  there.status);
+      if (!to.status.empty()) result.push_back(status_field(to.status, result));
       if (report.has_cells) in_cells.push_back(status_field(cells.status, in_cells));
       out.add(time, result, in_cells);
     }
   }
   out.finish();
+  if (!request.watch_file.empty())
+    kit::write_file(request.watch_file, watch_rows().csv(report.watched));
   if (!request.weights.empty()) {
     write_weights(request.weights, run.matrix);
     report.n_weights = run.matrix.rows.weights.size();
@@ -494,6 +528,7 @@ std::string table(const FileFieldsReport& r) {
         "  {:<12} {:016x}{}{}\n", fmt::format("step {} at {:.6g}", step.step, step.time),
         step.result_hash, step.n_nan == 0 ? "" : fmt::format(", NaN at {} vertices", step.n_nan),
         step.n_nan_cells == 0 ? "" : fmt::format(", NaN in {} cells", step.n_nan_cells));
+  if (!r.watched.empty()) out += watch_rows().table(r.watched);
   return out;
 }
 
@@ -527,6 +562,7 @@ kit::Json json_of(const FileFieldsReport& r) {
                               {"nan_vertices", step.n_nan},
                               {"nan_cells", step.n_nan_cells},
                               {"result_hash", kit::hex(step.result_hash)}});
+  if (!r.watched.empty()) whole["watched"] = watch_rows().json(r.watched);
   return whole;
 }
 

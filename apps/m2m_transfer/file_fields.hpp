@@ -9,6 +9,7 @@
 #include "apps/m2m_transfer/input/problem.hpp"
 #include "apps/m2m_transfer/names.hpp"
 #include "apps/m2m_transfer/report.hpp"
+#include "apps/m2m_transfer/watch.hpp"
 #include "m2m/field.hpp"
 #include "m2m/tally.hpp"
 #include "m2m/worst_places.hpp"
@@ -28,6 +29,8 @@ struct FileFieldsRequest : Request {
   std::string weights{};               ///< file to write them to
   std::string from_weights{};          ///< file to read them from, in place of a search
   std::string out{};                   ///< ExodusII with all steps, or .vtu with one
+  std::vector<std::string> watch{};    ///< "x,y,z"
+  std::string watch_file{};            ///< CSV of their values; empty: none
   std::vector<std::string> vectors{};  ///< fields that turn with the source; each may list several
 };
 
@@ -50,6 +53,7 @@ struct FileFieldsReport {
   std::uint64_t n_without = 0;  ///< target vertices without weights, if they were read
   std::uint64_t n_weights = 0;  ///< read or written
   std::vector<MovedStep> steps;
+  std::vector<Watched> watched;  ///< of every step
 };
 
 /// True if the request needs this and not a comparison with formulas: it names a step, a file of

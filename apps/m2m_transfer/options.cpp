@@ -67,6 +67,8 @@ void add_transfer(kit::Driver& driver, Options& options) {
       "--tolerance LENGTH", request.tolerance,
       "vertices outside the source but nearer than this snap to it; walls overlap within it");
   driver.flag("--clamp", request.clamp, "keep values within those of the donor's vertices");
+  driver.option("--order", request.order, "of the polynomials of moving least squares")
+      .between(1, 2);
   driver.in(runs | Mode::files);
   driver
       .option("--steps", request.steps,
@@ -123,11 +125,19 @@ void add_output(kit::Driver& driver, Options& options) {
   driver.option("--weights FILE", options.request.weights,
                 "write the weights of the transfer (NetCDF, ESMF's layout)");
   driver.enters("--weights", Mode::files);
+  driver.option("--watch X,Y,Z", options.request.watch,
+                "report the values of the source at this point in every step; repeat for several");
+  driver.enters("--watch", Mode::files);
+  driver.option("--watch-file FILE", options.request.watch_file,
+                "write the values of --watch as CSV (default: a table in the report)");
   driver.in(Mode::run);
   driver.option("--picture FILE", options.picture,
                 "draw the first field and its error in a cut through the target, as SVG");
   driver.json("write the report as JSON");
   driver.in(runs | Mode::study);
+  driver.option("--reference radial-basis", options.reference,
+                "one more row: the error and time of radial basis interpolation on one PE, from at "
+                "most 20 000 vertices");
   driver.explain("print what this transfer uses and what it leaves out");
 }
 
@@ -192,6 +202,19 @@ void check_values(const kit::Driver& driver, const Options& options) {
   driver.refuse_both("--chares", "--per-pe");
   driver.refuse_both("--steps", "--weights");  // these are of one place
   driver.refuse_both("--move", "--weights");
+  const bool has_all_kinds = request.kind == "all" || options.study == "kind" ||
+                             (driver.mode() == Mode::round_trips && !driver.is_given("--kind"));
+  if (request.order != 1 && request.kind != "moving-least-squares" && !has_all_kinds)
+    fail(ErrorCode::bad_argument, "--order ", request.order,
+         " is for kind moving-least-squares, not ", request.kind,
+         "; leave it out, or give that --kind");
+  if (options.request.watch.empty())
+    driver.line().refuse_without("--watch X,Y,Z", {"--watch-file"});
+  driver.refuse_both("--reference", "--pairs");
+  driver.refuse_both("--reference", "--move");
+  if (!options.reference.empty() && options.reference != "radial-basis")
+    fail(ErrorCode::bad_argument, "--reference ", options.reference,
+         " is unknown; choose radial-basis");
   if (request.moves.empty()) driver.line().refuse_without("--move A:rotate(…)", {"--vector"});
   if (request.steps == 1 && options.request.step != "all")
     driver.line().refuse_without("--steps above 1", {"--move"});
@@ -212,6 +235,7 @@ void take_files(kit::FileNames& files, const Options& options) {
   files.writes("--out", request.out);
   files.writes("--picture", options.picture);
   files.writes("--weights", request.weights);
+  files.writes("--watch-file", request.watch_file);
 }
 
 }  // namespace

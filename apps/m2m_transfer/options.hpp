@@ -23,6 +23,7 @@ struct Options {
   std::vector<std::string> policies{"keep"};
   std::optional<std::int32_t> repeat;  ///< default: 1, in a study 3
   std::string picture;
+  std::string reference;
   std::string study;        ///< "h", "kind", "steps" or "pes"; empty: none
   std::string plot;         ///< the folder for files of studies and drift; empty: default
   std::string round_trips;  ///< "1,2,5"

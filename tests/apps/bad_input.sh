@@ -82,6 +82,12 @@ refuses "--repeat .* --move" "${transfer[@]}" kuhn:2 kuhn:2 --repeat 2 --steps 2
 refuses "--round-trips: '2,1'" "$bin/m2m_transfer" --json "$scratch/result.json" kuhn:2 kuhn:2 --round-trips 2,1
 "$bin/m2m_transfer" kuhn:2 kuhn:2 --round-trips 1 --kind all >"$scratch/out" || fail "--round-trips refuses --kind all"
 refuses "--move .* --round-trips" "$bin/m2m_transfer" kuhn:2 kuhn:2 --round-trips 1 --move 'translate(1,0,0)'
+refuses "--order 2 is for kind moving-least-squares, not linear" "${transfer[@]}" kuhn:2 kuhn:2 --order 2
+refuses "--reference rbf is unknown; choose radial-basis" "${transfer[@]}" kuhn:2 kuhn:2 --reference rbf
+refuses "radial basis: 24389 points need a matrix of 4.7" "${transfer[@]}" kuhn:28 kuhn:2 --reference radial-basis
+refuses "--watch: '1,2' is no point" "${transfer[@]}" kuhn:2 kuhn:2 --watch 1,2
+refuses "--watch takes values at points, and kind conservative" "${transfer[@]}" kuhn:2 kuhn:2 --watch 1,1,1 --kind conservative
+refuses "--watch-file: needs --watch" "${transfer[@]}" kuhn:2 kuhn:2 --step 0 --watch-file "$scratch/w.csv"
 # Options that do not work together, or would overwrite an input.
 alone=("$bin/m2m_transfer" kuhn:2 kuhn:3)
 refuses "--plot: needs --study or --round-trips" "${alone[@]}" --plot "$scratch"

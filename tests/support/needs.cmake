@@ -3,6 +3,7 @@
 #   meshes        meshes that the entry make_meshes generates with gmsh, in the build folder
 #   gnuplot       the program
 #   vtk           VTK for Python (Debian: python3-vtk9)
+#   scipy         NumPy and SciPy, of the Python that the command begins with
 set(TESS_MESHES "${CMAKE_BINARY_DIR}/meshes")
 set(TESS_NEED_DIR "${CMAKE_CURRENT_LIST_DIR}")
 

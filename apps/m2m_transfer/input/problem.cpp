@@ -156,6 +156,7 @@ TaskOf<Problem> load(Request request) {
   check_kind(problem.kind, request);
   problem.tolerance = request.tolerance;
   problem.clamp = request.clamp;
+  problem.order = request.order;
   problem.repeat = request.repeat;
   problem.steps = request.steps;
   std::vector<std::string> names{request.source, request.target};

@@ -39,6 +39,7 @@ struct Request {
   double voxel = 0;         ///< edge; 0: chosen by the collider
   double tolerance = 0;     ///< length within which vertices snap to the source
   bool clamp = false;       ///< keep values within those of the donor
+  std::int32_t order = 1;   ///< of moving least squares
   std::int32_t repeat = 1;  ///< number of transfers; the fastest counts
   std::int32_t steps = 1;   ///< applications of each; the fastest counts
   std::vector<std::string> moves{};
@@ -76,6 +77,7 @@ struct Problem {
   Point voxel{};
   double tolerance = 0;
   bool clamp = false;
+  std::int32_t order = 1;
   bool collects = false;     ///< bring all results to PE 0, to write or draw them
   std::string parts_path{};  ///< every part writes its result beside this .pvtu file; may be empty
   std::int32_t repeat = 1, steps = 1;

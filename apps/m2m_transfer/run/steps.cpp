@@ -24,6 +24,7 @@ GraphRun::GraphRun(Problem& problem, std::vector<DistributedMesh>& meshes, kit::
   options.kind = problem.kind;
   options.tolerance = problem.tolerance;
   options.clamp = problem.clamp;
+  options.order = problem.order;
   options.on_phase = &on_phase_;
   for (const Pair& pair : problem.pairs)
     transfers_.emplace_back(meshes[pair.source], meshes[pair.target], options);

@@ -250,6 +250,45 @@ TEST_CASE("a vector of a file turns with its mesh, and other fields move with it
              Contains("--steps 2 applies fields of files once"));
 }
 
+TEST_CASE("points that are watched have the values of every step, and none outside",
+          "[m2m][driver]") {
+  const Scratch scratch;
+  constexpr std::size_t n = 20;
+  FileFieldsRequest request;
+  request.source = element_file(scratch, n);
+  request.target = "kuhn:2";
+  request.fields = {"temp", "max(y,z)"};
+  request.step = "all";
+  request.policy = "value:7";
+  const std::vector<std::uint64_t> unwatched = hashes(moved(request));
+  request.watch = {"0.3,0.4,0.5", "3,0,0.25", "1,1e-1,0"};
+  request.watch_file = scratch.path("watched.csv");
+  const FileFieldsReport report = moved(request);
+  CHECK(hashes(report) == unwatched);
+  CHECK(report.tally.counts[0] + report.tally.counts[1] == 27);
+  REQUIRE(report.watched.size() == n * 3 * 2);
+  for (std::size_t row = 0; row < report.watched.size(); ++row) {
+    const Watched& one = report.watched[row];
+    CHECK(one.field == (row % 2 == 0 ? "temp" : "max(y,z)"));
+    CHECK(one.value.has_value() == (row / 2 % 3 != 1));
+    if (one.value && row % 2 == 0)  // temp is x times twice the time
+      CHECK(*one.value == Approx(2 * one.time * one.at[0]).epsilon(1e-13));
+  }
+  const std::string csv = test::slurp(request.watch_file);
+  CHECK(csv.starts_with("time,x,y,z,field,value,status\n0.5,0.3,0.4,0.5,temp,0."));
+  CHECK_THAT(
+      csv,
+      Contains("\n10,3,0,0.25,temp,,outside\n10,3,0,0.25,\"max(y,z)\",,outside\n10,1,0.1,0,temp,"));
+  CHECK_THAT(csv, Contains("inside"));
+  CHECK_THAT(table(report) + kit::json_text(json_of(report)),
+             Contains("outside") && Contains("\"watched\": ["));
+  request.fields = {"q"};
+  CHECK_THAT(refusal(request), Contains("--fields names a field in elements"));
+  request.fields = {"temp"};
+  request.from_weights = "w.nc";
+  CHECK_THAT(refusal(request), Contains("--watch does not work with --from-weights"));
+}
+
 TEST_CASE("fields of a file are carried over to a part of its mesh, and written as a series",
           "[m2m][driver]") {
   const Scratch scratch;

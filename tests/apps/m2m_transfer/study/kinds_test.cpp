@@ -1,6 +1,7 @@
 // Studies of kinds, of steps and of PEs.
 #include "apps/m2m_transfer/study/study.hpp"
 #include "m2m/kuhn.hpp"
+#include "m2m/radial_basis.hpp"
 #include "tests/apps/m2m_transfer/program.hpp"
 
 #include <algorithm>
@@ -148,6 +149,45 @@ TEST_CASE("kind all runs every kind, each with the result that it has alone", "[
         CHECK(all[4 * k + row][name] == alone[row][name]);
     }
   }
+}
+
+TEST_CASE("a reference by radial basis functions is one more row", "[apps][study]") {
+  const Scratch scratch;
+  const Words reference{"--fields", "sin,linear", "--reference", "radial-basis"};
+  const auto rows_of = [&](Words words) {
+    words.insert(words.end(), reference.begin(), reference.end());
+    return results_of(threads(2), words);
+  };
+  const nlohmann::json rows = rows_of({"kuhn:5@0.2", "kuhn:6"});
+  REQUIRE(rows.size() == 4);
+  const TetMesh source = kuhn_mesh({5, 0.2}), target = kuhn_mesh({6});
+  const Formula sine = make_formula("sin", bounds(source));
+  const std::vector<double> values =
+      RadialBasis(source.points).values(sample(source, "sin", sine).values, 1, target.points);
+  double largest = 0;
+  for (std::size_t i = 0; i < values.size(); ++i)
+    largest = std::max(largest, std::abs(values[i] - sine(target.points[i])));
+  CHECK(rows[2]["kind"] == "radial-basis");
+  CHECK(rows[2]["linf"].get<double>() == Approx(largest).epsilon(1e-12));
+  CHECK(rows[2]["l2"].get<double>() < rows[0]["l2"].get<double>());
+  CHECK(rows[2]["transfer_seconds"].get<double>() > 0);
+  CHECK(rows[2]["integral_source"] == rows[0]["integral_source"]);
+  CHECK(rows[3]["linf"].get<double>() < 1e-11);
+  CHECK(rows_of({"kuhn:2", "kuhn:3", "--kind", "all"}).size() ==
+        2 * (all_transfer_kinds.size() + 1));
+  CHECK(rows_of({"kuhn:2,3", "--study", "h", "--policy", "keep", "--policy", "nearest", "--plot",
+                 scratch.path("study")})
+            .size() == 2 * 2 * 3);
+}
+
+TEST_CASE("the order of moving least squares can be chosen", "[apps][study]") {
+  const auto error = [](const char* order) {
+    return results_of(threads(1), {"kuhn:8@0.2", "kuhn:9", "--fields", "x^2+y*z", "--kind",
+                                   "moving-least-squares", "--order", order})[0]["linf"]
+        .get<double>();
+  };
+  CHECK(error("1") > 1e-3);
+  CHECK(error("2") < 1e-12);
 }
 
 TEST_CASE("kind all is refused where one result is wanted", "[apps][study]") {
