@@ -21,6 +21,9 @@ constexpr double above_rounding = 32;
 constexpr double most_extents = 8;
 /// One whose extent is below this part of the largest one may be left out before the order is.
 constexpr double thin = 0.1;
+/// So does one of which less than this part is independent of a quadratic polynomial of the wider ones:
+/// on a sphere, x² + y² + z² is constant, and a quadratic in three directions is not determined.
+constexpr double least_independent = 0.2;
 /// Neighbours do not determine a term if no more than this part of it is independent of others.
 constexpr double least_part_of_term = 1e-4;
 /// The sum of the magnitudes of weights: errors of values grow by so much at most.
@@ -117,6 +120,23 @@ bool MovingLeastSquares::fits(std::int32_t order, std::size_t n_axes) {
   return amplification <= most_amplification;
 }
 
+bool MovingLeastSquares::follows(std::size_t axis) {
+  const std::size_t n = local_.size();
+  Terms terms(q_, n, 0);
+  std::vector<double> column(n);
+  Terms::Numbers row{};
+  const std::size_t n_terms = terms_at({}, 2, axis, row);
+  for (std::size_t t = 0; t < n_terms; ++t) {
+    for (std::size_t j = 0; j < n; ++j) {
+      terms_at(local_[j], 2, axis, row);
+      column[j] = importance_[j] * row[t];
+    }
+    terms.append(column);
+  }
+  for (std::size_t j = 0; j < n; ++j) column[j] = importance_[j] * local_[j][axis];
+  return terms.append(column) < least_independent;
+}
+
 MovingLeastSquares::Fit MovingLeastSquares::compute(const Point& at,
                                                     std::span<const Point> neighbours) {
   set_axes(at, neighbours);
@@ -125,7 +145,8 @@ MovingLeastSquares::Fit MovingLeastSquares::compute(const Point& at,
   for (std::int32_t order = order_; order > 0; --order)
     for (std::size_t n = n_axes_; n > 0; --n) {
       const bool are_few = neighbours.size() < terms_at({}, order, n_axes_, terms);
-      if (are_few || (n < n_axes_ && extent_[n] > thin * extent_[0])) break;
+      const bool is_wide = n < n_axes_ && extent_[n] > thin * extent_[0];
+      if (are_few || (is_wide && !(order == 2 && follows(n)))) break;
       if (fits(order, n)) return {order, static_cast<std::int32_t>(n)};
     }
   double total = 0;

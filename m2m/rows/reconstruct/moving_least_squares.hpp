@@ -50,6 +50,8 @@ class MovingLeastSquares {
   void set_axes(const Point& at, std::span<const Point> neighbours);
   /// False, unless the neighbours determine this polynomial and its weights are small.
   [[nodiscard]] bool fits(std::int32_t order, std::size_t n_axes);
+  /// True if the neighbours' coordinate on an axis follows from those on the wider axes.
+  [[nodiscard]] bool follows(std::size_t axis);
 
   std::int32_t order_;
   std::vector<double> importance_;  // the square root of φ, per neighbour
