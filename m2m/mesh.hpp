@@ -74,10 +74,11 @@ struct SplitElements {
   friend bool operator==(const SplitElements&, const SplitElements&) = default;
 };
 
-/// Elements with shape functions of their own: TET10, HEX8, WEDGE6 and PYRAMID5 by their numbers of
-/// vertices.
+/// Elements with shape functions of their own: TET10, HEX8, HEX27, WEDGE6 and PYRAMID5 by their
+/// numbers of vertices.
 [[nodiscard]] constexpr bool is_native(std::int64_t n_vertices) noexcept {
-  return n_vertices == 10 || n_vertices == 8 || n_vertices == 6 || n_vertices == 5;
+  return n_vertices == 27 || n_vertices == 10 || n_vertices == 8 || n_vertices == 6 ||
+         n_vertices == 5;
 }
 /// The vertices of the element that begins there in NativeElements::vertices.
 [[nodiscard]] inline std::span<const VertexId> vertices_of_element(std::span<const VertexId> all,

@@ -17,7 +17,7 @@ enum class TransferKind : std::uint8_t {
   /// outside: second order, or third (CouplingOptions::order); not bounded
   moving_least_squares,
   /// by the shape functions of the elements that tetrahedra were split from: second order and exact
-  /// for trilinear fields in parallelepipeds, third order of ten-node tetrahedra; linear in others
+  /// for trilinear fields in parallelepipeds, third order in quadratic elements; linear in others
   native,
   conservative,          ///< L2 projection: keeps the integral; second order, not bounded
   conservative_bounded,  ///< the same, kept within the source values that overlap

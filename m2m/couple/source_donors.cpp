@@ -40,18 +40,23 @@ double clamped(double value, const Donor& donor, const double* values, std::size
   return value < low ? low : value > high ? high : value;
 }
 
-/// Writes the values of the rows that are not empty.
+/// Writes the values of the rows that are not empty; a weight of 0 takes nothing of NaN.
 void put_rows(const Rows<double>& rows, std::span<const double> values, std::size_t n_components,
               bool clamp, std::span<double> out) {
-  std::vector<double> all(out.size());
-  std::vector<ValueRange> ranges(clamp ? out.size() : 0);
-  m2m::apply(rows, values, n_components, all);
-  if (clamp) value_ranges(rows, values, n_components, ranges);
-  for (std::size_t i = 0; i < out.size(); ++i) {
-    if (rows.columns_of(i / n_components).empty()) continue;
-    if (clamp && all[i] < ranges[i].low) all[i] = ranges[i].low;
-    if (clamp && all[i] > ranges[i].high) all[i] = ranges[i].high;
-    out[i] = all[i];
+  for (std::size_t row = 0; row < rows.n_rows(); ++row) {
+    const std::span<const VertexId> columns = rows.columns_of(row);
+    for (std::size_t c = 0; c < n_components && !columns.empty(); ++c) {
+      const auto value = [&](std::size_t k) {
+        return values[static_cast<std::size_t>(columns[k]) * n_components + c];
+      };
+      double sum = weighted(rows.weights_of(row)[0], value(0)), low = value(0), high = low;
+      for (std::size_t k = 1; k < columns.size(); ++k) {
+        sum += weighted(rows.weights_of(row)[k], value(k));
+        low = value(k) < low ? value(k) : low;
+        high = value(k) > high ? value(k) : high;
+      }
+      out[row * n_components + c] = !clamp ? sum : sum < low ? low : sum > high ? high : sum;
+    }
   }
 }
 

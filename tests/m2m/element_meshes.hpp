@@ -3,6 +3,7 @@
 
 #include "m2m/io/elements/split_element.hpp"
 #include "m2m/mesh.hpp"
+#include "m2m/rows/interpolate/native_element.hpp"
 
 #include <algorithm>
 #include <array>
@@ -17,6 +18,11 @@ namespace tess::test {
 inline constexpr std::array all_element_types{m2m::ElementType::tet4, m2m::ElementType::tet10,
                                               m2m::ElementType::hex8, m2m::ElementType::wedge6,
                                               m2m::ElementType::pyramid5};
+
+/// Those that are split.
+inline constexpr std::array native_element_types{m2m::ElementType::hex8, m2m::ElementType::wedge6,
+                                                 m2m::ElementType::pyramid5,
+                                                 m2m::ElementType::tet10, m2m::ElementType::hex27};
 
 /// The unit cube of n³ bricks whose sides grow along each axis, so that ten-node tetrahedra are
 /// curved: n³ hexahedra, or 6 n³ tetrahedra, 2 n³ wedges or 6 n³ pyramids.
@@ -58,7 +64,14 @@ inline m2m::TetMesh element_mesh(m2m::ElementType type, int n) {
                                      {i + 2, j, k + 2},
                                      {i + 2, j + 2, k + 2},
                                      {i, j + 2, k + 2}}};
-        if (type == ElementType::hex8) {
+        if (type == ElementType::hex27) {
+          std::vector<Grid> nodes;
+          for (std::size_t node = 0; node < 27; ++node) {
+            const m2m::Point r = m2m::reference_vertex(27, node);
+            nodes.push_back({i + int(2 * r[0]), j + int(2 * r[1]), k + int(2 * r[2])});
+          }
+          add(nodes);
+        } else if (type == ElementType::hex8) {
           add({v.begin(), v.end()});
         } else if (type == ElementType::wedge6) {
           add({v[0], v[1], v[2], v[4], v[5], v[6]});

@@ -1,5 +1,6 @@
 #include "m2m/io/elements/split_element.hpp"
 
+#include "m2m/rows/interpolate/native_element.hpp"
 #include "m2m/surface/sides.hpp"
 #include "runtime/core/check.hpp"
 
@@ -10,7 +11,7 @@
 namespace tess::m2m {
 namespace {
 
-using Face = std::array<std::int8_t, 6>;  // vertices of an element, -1 from the last one on
+using Face = std::vector<std::size_t>;  // vertices of an element
 
 /// The sides of ExodusII, counter-clockwise seen from outside.
 struct Shape {
@@ -19,40 +20,23 @@ struct Shape {
 };
 
 const Shape& shape_of(ElementType type) {
-  static const std::array<Shape, 9> shapes{{
-      {4,
-       {{0, 1, 3, -1, -1, -1},
-        {1, 2, 3, -1, -1, -1},
-        {0, 3, 2, -1, -1, -1},
-        {0, 2, 1, -1, -1, -1}}},
-      {8,
-       {{0, 1, 5, 4, -1, -1},
-        {1, 2, 6, 5, -1, -1},
-        {2, 3, 7, 6, -1, -1},
-        {0, 4, 7, 3, -1, -1},
-        {0, 3, 2, 1, -1, -1},
-        {4, 5, 6, 7, -1, -1}}},
-      {6,
-       {{0, 1, 4, 3, -1, -1},
-        {1, 2, 5, 4, -1, -1},
-        {0, 3, 5, 2, -1, -1},
-        {0, 2, 1, -1, -1, -1},
-        {3, 4, 5, -1, -1, -1}}},
-      {5,
-       {{0, 1, 4, -1, -1, -1},
-        {1, 2, 4, -1, -1, -1},
-        {2, 3, 4, -1, -1, -1},
-        {0, 4, 3, -1, -1, -1},
-        {0, 3, 2, 1, -1, -1}}},
+  static const std::array<Shape, 10> shapes{{
+      {4, {{0, 1, 3}, {1, 2, 3}, {0, 3, 2}, {0, 2, 1}}},
+      {8, {{0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {0, 4, 7, 3}, {0, 3, 2, 1}, {4, 5, 6, 7}}},
+      {6, {{0, 1, 4, 3}, {1, 2, 5, 4}, {0, 3, 5, 2}, {0, 2, 1}, {3, 4, 5}}},
+      {5, {{0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {0, 4, 3}, {0, 3, 2, 1}}},
       {10, {{0, 1, 3, 4, 8, 7}, {1, 2, 3, 5, 9, 8}, {0, 3, 2, 7, 9, 6}, {0, 2, 1, 6, 5, 4}}},
-      {3, {{0, 1, -1, -1, -1, -1}, {1, 2, -1, -1, -1, -1}, {2, 0, -1, -1, -1, -1}}},
-      {6, {{0, 1, 3, -1, -1, -1}, {1, 2, 4, -1, -1, -1}, {2, 0, 5, -1, -1, -1}}},
-      {4,
-       {{0, 1, -1, -1, -1, -1},
-        {1, 2, -1, -1, -1, -1},
-        {2, 3, -1, -1, -1, -1},
-        {3, 0, -1, -1, -1, -1}}},
-      {2, {{0, -1, -1, -1, -1, -1}, {1, -1, -1, -1, -1, -1}}},
+      {27,
+       {{0, 1, 5, 4, 8, 13, 16, 12, 25},
+        {1, 2, 6, 5, 9, 14, 17, 13, 24},
+        {2, 3, 7, 6, 10, 15, 18, 14, 26},
+        {0, 4, 7, 3, 12, 19, 15, 11, 23},
+        {0, 3, 2, 1, 11, 10, 9, 8, 21},
+        {4, 5, 6, 7, 16, 17, 18, 19, 22}}},
+      {3, {{0, 1}, {1, 2}, {2, 0}}},
+      {6, {{0, 1, 3}, {1, 2, 4}, {2, 0, 5}}},
+      {4, {{0, 1}, {1, 2}, {2, 3}, {3, 0}}},
+      {2, {{0}, {1}}},
   }};
   return shapes[static_cast<std::size_t>(type)];
 }
@@ -81,6 +65,22 @@ void split_tet10(std::span<const VertexId> v, std::vector<Tet>& tets) {
   for (const auto& part : parts) append({v[part[0]], v[part[1]], v[part[2]], v[part[3]]}, tets);
 }
 
+/// The eight hexahedra at its corners.
+void split_hex27(std::span<const VertexId> v, std::vector<Tet>& tets) {
+  std::array<std::size_t, 27> at{};  // the vertex at each place of a grid of 3³
+  for (std::size_t k = 0; k < 27; ++k) {
+    const Point r = reference_vertex(27, k);
+    at[static_cast<std::size_t>(2 * (r[0] + 3 * r[1] + 9 * r[2]))] = k;
+  }
+  constexpr std::size_t firsts[8] = {0, 1, 3, 4, 9, 10, 12, 13};
+  constexpr std::size_t steps[8] = {0, 1, 4, 3, 9, 10, 13, 12};
+  for (const std::size_t first : firsts) {
+    std::array<VertexId, 8> part{};
+    for (std::size_t k = 0; k < 8; ++k) part[k] = v[at[first + steps[k]]];
+    split_element(ElementType::hex8, part, tets);
+  }
+}
+
 }  // namespace
 
 std::size_t n_vertices(ElementType type) noexcept {
@@ -95,6 +95,7 @@ void split_element(ElementType type, std::span<const VertexId> vertices, std::ve
   TESS_CHECK(vertices.size() == shape.n_vertices, "expected ", shape.n_vertices, " vertices, got ",
              vertices.size());
   if (type == ElementType::tet10) return split_tet10(vertices, tets);
+  if (type == ElementType::hex27) return split_hex27(vertices, tets);
   if (is_simplex(type)) {
     Tet& cell = tets.emplace_back();
     for (std::size_t k = 0; k < 4; ++k) cell[k] = vertices[std::min(k, vertices.size() - 1)];
@@ -105,7 +106,7 @@ void split_element(ElementType type, std::span<const VertexId> vertices, std::ve
   for (const Face& side : shape.sides) {
     std::array<VertexId, 4> face{};
     std::size_t n = 0;
-    for (; n < 4 && side[n] >= 0; ++n) face[n] = vertices[static_cast<std::size_t>(side[n])];
+    for (; n < side.size(); ++n) face[n] = vertices[side[n]];
     const auto end = face.begin() + static_cast<std::ptrdiff_t>(n);
     if (std::find(face.begin(), end, apex) != end) continue;
     std::rotate(face.begin(), std::min_element(face.begin(), end), end);
@@ -152,8 +153,8 @@ void ElementSplitter::append_side(GlobalId element, std::int64_t side,
   const Shape& shape = shape_of(run->type);
   const std::span<const VertexId> vertices = mesh_.elements.vertices_at(run->begin_of(number));
   std::vector<VertexId> face;
-  for (const std::int8_t v : shape.sides[static_cast<std::size_t>(side - 1)])
-    if (v >= 0) face.push_back(vertices[static_cast<std::size_t>(v)]);
+  for (const std::size_t v : shape.sides[static_cast<std::size_t>(side - 1)])
+    face.push_back(vertices[v]);
   const Run* const next =
       run_of(run->first_element + static_cast<GlobalId>(run->first_tets.size()));
   const GlobalId end =

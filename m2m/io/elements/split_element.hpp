@@ -6,7 +6,7 @@
 //     that do not hold this vertex (Dompierre, Labbé, Vallet and Camarero 1999, "How to subdivide
 //     pyramids, prisms and hexahedra into tetrahedra").
 //
-// A hexahedron gives six tetrahedra, a wedge three, a pyramid two. Elements with repeated vertices
+// A hexahedron gives six tetrahedra, one of 27 vertices eight times as many, a wedge three, a pyramid two. Elements with repeated vertices
 // (a wedge written as a hexahedron) give fewer. A ten-node tetrahedron gives eight: four at its
 // corners, and four of the octahedron between them (Bey 1995). Kind native evaluates the
 // elements themselves (native_element.hpp). Meshes of surfaces and lines have triangles (six-node ones are split into four),
@@ -31,6 +31,7 @@ enum class ElementType : std::uint8_t {
   wedge6,
   pyramid5,
   tet10,
+  hex27,
   tri3,
   tri6,
   quad4,
@@ -47,11 +48,18 @@ enum class ElementType : std::uint8_t {
 }
 
 [[nodiscard]] constexpr const char* name_of(ElementType type) noexcept {
-  constexpr std::array names{"TET4", "HEX8", "WEDGE6", "PYRAMID5", "TET10",
-                             "TRI3", "TRI6", "QUAD4",  "EDGE2"};
+  constexpr std::array names{"TET4",  "HEX8", "WEDGE6", "PYRAMID5", "TET10",
+                             "HEX27", "TRI3", "TRI6",   "QUAD4",    "EDGE2"};
   return names[static_cast<std::size_t>(type)];
 }
 
+/// Room for those of any type.
+using ElementVertices = std::array<VertexId, 27>;
+/// Puts the vertices of a hex27 of a format into the order of ExodusII: the k-th from order[k].
+inline void reorder(ElementVertices& vertices, const std::array<std::size_t, 27>& order) {
+  const ElementVertices given = vertices;
+  for (std::size_t k = 0; k < order.size(); ++k) vertices[k] = given[order[k]];
+}
 [[nodiscard]] std::size_t n_vertices(ElementType type) noexcept;
 [[nodiscard]] std::size_t n_sides(ElementType type) noexcept;
 

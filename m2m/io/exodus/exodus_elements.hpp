@@ -35,7 +35,7 @@ namespace tess::m2m {
   return 3;
 }
 
-/// The element of this name and number of vertices, if it is supported: TET4, TET10, HEX8, WEDGE6,
+/// The element of this name and number of vertices, if it is supported: TET4, TET10, HEX8, HEX27, WEDGE6,
 /// PYRAMID5, TRI3, TRI6, QUAD4, SHELL3, SHELL4, BAR2 and other lines of two vertices, also without
 /// the number. `type`: in upper case.
 [[nodiscard]] constexpr std::optional<ElementType> exodus_supported(std::string_view type,
@@ -48,10 +48,11 @@ namespace tess::m2m {
   };
   constexpr std::array known{
       Known{"TET", 4, "4", ElementType::tet4},     Known{"TET", 10, "10", ElementType::tet10},
-      Known{"HEX", 8, "8", ElementType::hex8},     Known{"WEDGE", 6, "6", ElementType::wedge6},
-      Known{"PYR", 5, "5", ElementType::pyramid5}, Known{"TRI", 3, "3", ElementType::tri3},
-      Known{"TRI", 6, "6", ElementType::tri6},     Known{"QUAD", 4, "4", ElementType::quad4},
-      Known{"SHELL", 3, "3", ElementType::tri3},   Known{"SHELL", 4, "4", ElementType::quad4}};
+      Known{"HEX", 8, "8", ElementType::hex8},     Known{"HEX", 27, "27", ElementType::hex27},
+      Known{"WEDGE", 6, "6", ElementType::wedge6}, Known{"PYR", 5, "5", ElementType::pyramid5},
+      Known{"TRI", 3, "3", ElementType::tri3},     Known{"TRI", 6, "6", ElementType::tri6},
+      Known{"QUAD", 4, "4", ElementType::quad4},   Known{"SHELL", 3, "3", ElementType::tri3},
+      Known{"SHELL", 4, "4", ElementType::quad4}};
   const std::string_view digits = type.substr(type.find_last_not_of("0123456789") + 1);
   if (exodus_dimension(type) == 1 && n_vertices == 2) return ElementType::edge2;
   for (const Known& k : known)

@@ -22,7 +22,7 @@ namespace tess::m2m {
 namespace {
 
 constexpr const char* supported(std::int32_t dimension) {
-  return dimension == 3   ? "TET4, TET10, HEX8, WEDGE6 and PYRAMID5"
+  return dimension == 3   ? "TET4, TET10, HEX8, HEX27, WEDGE6 and PYRAMID5"
          : dimension == 2 ? "TRI3, TRI6, QUAD4, SHELL3 and SHELL4"
                           : "BAR2 and other lines of two vertices";
 }

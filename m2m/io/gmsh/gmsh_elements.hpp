@@ -1,9 +1,11 @@
 // The element types of gmsh's MSH format (gmsh reference manual, section 10.1). Vertices are in the
-// order of ExodusII but for the last two of a tet10.
+// order of ExodusII but for the last two of a tet10, and those of a hex27.
 #pragma once
 
 #include "m2m/io/elements/split_element.hpp"
 
+#include <array>
+#include <cstddef>
 #include <optional>
 #include <string_view>
 
@@ -52,6 +54,8 @@ constexpr std::optional<ElementType> gmsh_supported(int number) {
       return ElementType::tet4;
     case 5:
       return ElementType::hex8;
+    case 12:
+      return ElementType::hex27;
     case 6:
       return ElementType::wedge6;
     case 7:
@@ -64,5 +68,10 @@ constexpr std::optional<ElementType> gmsh_supported(int number) {
       return std::nullopt;
   }
 }
+
+/// The vertices of a hex27 of ExodusII in that of gmsh.
+inline constexpr std::array<std::size_t, 27> gmsh_hex27{0,  1,  2,  3,  4,  5,  6,  7,  8,
+                                                        11, 13, 9,  10, 12, 14, 15, 16, 18,
+                                                        19, 17, 26, 20, 25, 22, 23, 21, 24};
 
 }  // namespace tess::m2m

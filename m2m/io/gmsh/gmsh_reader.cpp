@@ -196,7 +196,7 @@ class GmshReader {
       ++n_skipped_[static_cast<std::size_t>(type.number)];
       return file_.skip<Tag>(static_cast<std::size_t>(type.n_vertices));
     }
-    std::array<VertexId, 10> ids{};
+    ElementVertices ids{};
     const auto corners = std::span(ids).first(static_cast<std::size_t>(type.n_vertices));
     for (VertexId& vertex : corners) {
       const Tag tag = file_.number<Tag>();
@@ -211,6 +211,7 @@ class GmshReader {
       return;
     }
     if (*known == ElementType::tet10) std::swap(ids[8], ids[9]);
+    if (*known == ElementType::hex27) reorder(ids, gmsh_hex27);
     const int group = groups.empty() ? 0 : groups.front();
     if (format_.legacy && is_repeated(type, ids, entity, group)) {
       // gmsh writes values for the last tag
@@ -225,8 +226,7 @@ class GmshReader {
 
   /// Version 2.2 has one physical group per element. Of an entity in several groups gmsh writes
   /// each element once for each group, in a row, every time with another tag.
-  bool is_repeated(const GmshElement& type, const std::array<VertexId, 10>& ids, int entity,
-                   int group) {
+  bool is_repeated(const GmshElement& type, const ElementVertices& ids, int entity, int group) {
     const Cell last = std::exchange(last_cell_, {&type, ids, entity, group});
     return last.type == &type && last.entity == entity && last.group != group &&
            std::equal(ids.begin(), ids.begin() + type.n_vertices, last.ids.begin());
@@ -314,19 +314,20 @@ class GmshReader {
   }
 
   [[nodiscard]] const char* supported() const {
-    return mesh_.dimension == 3 ? "of volumes, tet4, tet10, hex8, prism6 and pyramid5 are supported"
+    return mesh_.dimension == 3
+               ? "of volumes, tet4, tet10, hex8, hex27, prism6 and pyramid5 are supported"
            : mesh_.dimension == 2 ? "of surfaces, triangle3, triangle6 and quad4 are supported"
                                   : "of lines, line2 is supported";
   }
 
   struct Cell {
     const GmshElement* type = nullptr;
-    std::array<VertexId, 10> ids{};
+    ElementVertices ids{};
     int entity = 0, group = 0;
   };
   struct GroupedSide {
     ElementType type;
-    std::array<VertexId, 10> ids;
+    ElementVertices ids;
     int number;  // of its type
   };
 

@@ -3,6 +3,8 @@
 
 #include "m2m/io/elements/split_element.hpp"
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string_view>
@@ -106,6 +108,8 @@ constexpr std::optional<ElementType> vtu_supported(std::int64_t number, std::siz
     case 11:
     case 12:
       return ElementType::hex8;
+    case 29:
+      return ElementType::hex27;
     case 13:
       return ElementType::wedge6;
     case 14:
@@ -116,6 +120,11 @@ constexpr std::optional<ElementType> vtu_supported(std::int64_t number, std::siz
       return std::nullopt;
   }
 }
+
+/// The vertices of a hex27 of ExodusII in a triquadratic hexahedron.
+inline constexpr std::array<std::size_t, 27> vtu_hex27{0,  1,  2,  3,  4,  5,  6,  7,  8,
+                                                       9,  10, 11, 16, 17, 18, 19, 12, 13,
+                                                       14, 15, 26, 24, 25, 20, 21, 22, 23};
 
 /// 0 to 3, also of types that are not supported; -1 for a number that is no type.
 constexpr int vtu_dimension(std::int64_t number) {

@@ -106,7 +106,7 @@ class VtuMeshReader {
            "these");
     if (vertices.size() != n_vertices(*element))
       file.damaged("cell ", cell, " of type ", known->name, " has ", vertices.size(), " vertices");
-    std::array<VertexId, 10> ids{};
+    ElementVertices ids{};
     const auto n_points = static_cast<std::int64_t>(mesh_.n_points() - first);
     for (std::size_t k = 0; k < vertices.size(); ++k) {
       if (vertices[k] < 0 || vertices[k] >= n_points)
@@ -116,6 +116,7 @@ class VtuMeshReader {
     }
     if (type == 8 || type == 11) std::swap(ids[2], ids[3]);
     if (type == 11) std::swap(ids[6], ids[7]);
+    if (type == 29) reorder(ids, vtu_hex27);
     if (*element == ElementType::wedge6 && is_inverted(ids)) {
       std::swap(ids[1], ids[2]);
       std::swap(ids[4], ids[5]);
@@ -124,15 +125,15 @@ class VtuMeshReader {
   }
 
   [[nodiscard]] const char* supported() const {
-    return mesh_.dimension == 3
-               ? "of volumes, tetra, hexahedron, voxel, wedge, pyramid and quadratic tetra"
+    return mesh_.dimension == 3 ? "of volumes, tetra, hexahedron, voxel, wedge, pyramid, quadratic "
+                                  "tetra and triquadratic hexahedron"
            : mesh_.dimension == 2
                ? "of surfaces, triangle, quad, pixel, polygon of 3 or 4 and quadratic triangle"
                : "of lines, line and poly line of 2";
   }
 
   /// VTK's wedges have the opposite orientation of ExodusII's; many programs write the latter.
-  [[nodiscard]] bool is_inverted(const std::array<VertexId, 10>& wedge) const {
+  [[nodiscard]] bool is_inverted(const ElementVertices& wedge) const {
     const auto edge = [&](std::size_t to) {
       return difference(mesh_.points[static_cast<std::size_t>(wedge[to])],
                         mesh_.points[static_cast<std::size_t>(wedge[0])]);

@@ -7,8 +7,12 @@
 namespace tess::m2m {
 namespace {
 
-constexpr std::size_t cube_corners[8][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0},
-                                            {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
+/// In halves of the edge; eight-node hexahedra and bases of pyramids have the first ones.
+constexpr std::int8_t cube_vertices[27][3] = {
+    {0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}, {0, 0, 2}, {2, 0, 2}, {2, 2, 2},
+    {0, 2, 2}, {1, 0, 0}, {2, 1, 0}, {1, 2, 0}, {0, 1, 0}, {0, 0, 1}, {2, 0, 1},
+    {2, 2, 1}, {0, 2, 1}, {1, 0, 2}, {2, 1, 2}, {1, 2, 2}, {0, 1, 2}, {1, 1, 1},
+    {1, 1, 0}, {1, 1, 2}, {0, 1, 1}, {2, 1, 1}, {1, 0, 1}, {1, 2, 1}};
 /// The corners of the edge of a tetrahedron whose middle is vertex 4 + k.
 constexpr std::size_t tet_edges[6][2] = {{0, 1}, {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2, 3}};
 /// Of barycentric coordinates L_0, L_1, … by L_1, L_2, …
@@ -16,13 +20,22 @@ constexpr double by_axis(std::size_t l, std::size_t axis) {
   return l == 0 ? -1 : l == axis + 1 ? 1 : 0;
 }
 
-void set_hexahedron(const Point& r, ShapeFunctions& n) {
-  for (std::size_t k = 0; k < 8; ++k) {
+/// On an edge with vertices at 0 and 1, and in the middle if it is quadratic: the shape function of
+/// the vertex at `half` / 2, and its derivative.
+std::array<double, 2> on_edge(int half, double x, bool is_quadratic) {
+  if (!is_quadratic) return half == 0 ? std::array{1 - x, -1.0} : std::array{x, 1.0};
+  if (half == 1) return {4 * x * (1 - x), 4 - 8 * x};
+  return half == 0 ? std::array{(1 - x) * (1 - 2 * x), 4 * x - 3}
+                   : std::array{x * (2 * x - 1), 4 * x - 1};
+}
+
+void set_hexahedron(std::size_t n_vertices, const Point& r, ShapeFunctions& n) {
+  for (std::size_t k = 0; k < n_vertices; ++k) {
     Point f{}, slope{};
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const bool is_far = cube_corners[k][axis] == 1;
-      f[axis] = is_far ? r[axis] : 1 - r[axis];
-      slope[axis] = is_far ? 1 : -1;
+      const auto [value, by] = on_edge(cube_vertices[k][axis], r[axis], n_vertices == 27);
+      f[axis] = value;
+      slope[axis] = by;
     }
     n.values[k] = f[0] * f[1] * f[2];
     n.gradients[k] = {slope[0] * f[1] * f[2], f[0] * slope[1] * f[2], f[0] * f[1] * slope[2]};
@@ -90,18 +103,18 @@ double determinant(const std::array<Point, 3>& column) {
 
 ShapeFunctions shape_functions(std::size_t n_vertices, const Point& r) {
   ShapeFunctions n;
-  (n_vertices == 8   ? set_hexahedron
-   : n_vertices == 6 ? set_wedge
-   : n_vertices == 5 ? set_pyramid
-                     : set_quadratic)(r, n);
+  if (n_vertices == 8 || n_vertices == 27) {
+    set_hexahedron(n_vertices, r, n);
+  } else {
+    (n_vertices == 6 ? set_wedge : n_vertices == 5 ? set_pyramid : set_quadratic)(r, n);
+  }
   return n;
 }
 
 Point reference_vertex(std::size_t n_vertices, std::size_t k) {
   Point r{};
-  if (n_vertices == 8 || (n_vertices == 5 && k < 4)) {
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      r[axis] = static_cast<double>(cube_corners[k][axis]);
+  if (n_vertices == 8 || n_vertices == 27 || (n_vertices == 5 && k < 4)) {
+    for (std::size_t axis = 0; axis < 3; ++axis) r[axis] = 0.5 * cube_vertices[k][axis];
   } else if (n_vertices == 5) {
     r[2] = 1;
   } else if (n_vertices == 6) {
@@ -117,7 +130,7 @@ Point reference_vertex(std::size_t n_vertices, std::size_t k) {
 
 double depth_in_element(std::size_t n_vertices, const Point& r) {
   const auto& [x, y, z] = r;
-  if (n_vertices == 8) return std::min({x, y, z, 1 - x, 1 - y, 1 - z});
+  if (n_vertices == 8 || n_vertices == 27) return std::min({x, y, z, 1 - x, 1 - y, 1 - z});
   if (n_vertices == 6) return std::min({x, y, 1 - (x + y), z, 1 - z});
   if (n_vertices == 10) return std::min({x, y, z, 1 - (x + y + z)});
   const double s = 1 - z;

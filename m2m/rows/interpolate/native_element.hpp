@@ -4,6 +4,7 @@
 // the type:
 //
 //   8   trilinear in the unit cube
+//   27  triquadratic there, with vertices in the middles of edges, faces and the element
 //   6   linear in a triangle times linear in [0, 1]
 //   5   rational (Bedrosian 1992), with s = 1 - z in x, y of [0, s]: x y / s is bilinear at each z,
 //       so a pyramid and its neighbours agree on their common faces
@@ -19,7 +20,7 @@
 
 namespace tess::m2m {
 
-inline constexpr std::size_t most_native_vertices = 10;
+inline constexpr std::size_t most_native_vertices = 27;
 
 /// Of each vertex; those beyond the element's are 0.
 struct ShapeFunctions {

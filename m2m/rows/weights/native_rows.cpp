@@ -36,8 +36,7 @@ void add_native_row(const MeshView& mesh, const NativePoint& point, Rows<double>
         start_of(mesh.tets[tet], point.in.weights, element), point.is_snapped ? 1e-9 : 0.1);
     if (r) {
       const ShapeFunctions shape = shape_functions(element.size(), *r);
-      for (std::size_t k = 0; k < element.size(); ++k)
-        if (shape.values[k] != 0) rows.add(element[k], shape.values[k]);  // 0 takes nothing of NaN
+      for (std::size_t k = 0; k < element.size(); ++k) rows.add(element[k], shape.values[k]);
     } else if (!point.is_snapped) {
       ++n_linear;
     }

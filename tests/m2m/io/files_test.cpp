@@ -2,6 +2,7 @@
 #include "m2m/io/ranges/mesh_ranges.hpp"
 #include "m2m/kuhn.hpp"
 #include "m2m/read_mesh.hpp"
+#include "m2m/rows/interpolate/native_element.hpp"
 #include "m2m/write_exodus.hpp"
 #include "tests/m2m/io/damage.hpp"
 #include "tests/m2m/io/gmsh_text.hpp"
@@ -335,6 +336,39 @@ TEST_CASE("solids of gmsh are split; a tet10 of gmsh has its last two vertices s
   double volume = 0;
   for (std::size_t t = 0; t < solids.n_tets(); ++t) volume += signed_volume(solids, t);
   CHECK(volume == Approx(1 + 1.0 / 3 + 0.5).epsilon(1e-14));
+}
+
+TEST_CASE("a hexahedron of 27 vertices comes in the order of ExodusII", "[m2m][io]") {
+  // As gmsh writes one, in both formats.
+  const std::array<std::string, 27> points{
+      "0 0 0",   "1 0 0",   "0 1 0",   "1 1 0",   "0 0 1",   "1 0 1",   "1 1 1",
+      "0 1 1",   ".5 0 0",  ".5 1 0",  "0 .5 0",  "1 .5 0",  ".5 0 1",  "1 .5 1",
+      ".5 1 1",  "0 .5 1",  "0 0 .5",  "1 0 .5",  "1 1 .5",  "0 1 .5",  ".5 .5 0",
+      ".5 0 .5", "1 .5 .5", ".5 1 .5", "0 .5 .5", ".5 .5 1", ".5 .5 .5"};
+  std::string nodes, lines;
+  for (std::size_t k = 0; k < 27; ++k) {
+    nodes += std::to_string(k + 1) + " " + points[k] + "\n";
+    lines += points[k] + "\n";
+  }
+  const Scratch scratch;
+  const std::string vtk =
+      scratch.write("hex27.vtk",
+                    "# vtk DataFile Version 2.0\nhex27\nASCII\nDATASET UNSTRUCTURED_GRID\n"
+                    "POINTS 27 double\n" +
+                        lines +
+                        "CELLS 1 28\n27 0 1 3 2 4 5 6 7 8 11 9 10 12 13 14 15 16 17 18 19 24 22 21 "
+                        "23 20 25 26\nCELL_TYPES 1\n29\n");
+  const TetMesh gmsh = read_gmsh(
+      "hex27", "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n27\n" + nodes +
+                   "$EndNodes\n$Elements\n1\n1 12 2 1 1 1 2 4 3 5 6 7 8 9 11 17 12 18 10 19 20 13 "
+                   "16 14 15 21 22 25 23 24 26 27\n$EndElements\n");
+  for (const TetMesh& mesh : {gmsh, read_mesh(vtk)}) {
+    CHECK(split_text(mesh) == "1 HEX27 into 48 tetrahedra");
+    const std::span<const VertexId> vertices = mesh.elements.vertices_at(0);
+    REQUIRE(vertices.size() == 27);
+    for (std::size_t k = 0; k < 27; ++k)
+      CHECK(mesh.points[static_cast<std::size_t>(vertices[k])] == reference_vertex(27, k));
+  }
 }
 
 TEST_CASE("a real mesh keeps its blocks and sets when it is written", "[m2m][io][.][shared_data]") {

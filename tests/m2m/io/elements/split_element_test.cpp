@@ -1,6 +1,7 @@
 #include "m2m/io/elements/split_element.hpp"
 
 #include "m2m/kuhn.hpp"
+#include "m2m/rows/interpolate/native_element.hpp"
 #include "tests/support/catch.hpp"
 
 #include <algorithm>
@@ -26,7 +27,13 @@ struct Known {
   std::size_t n_tets;
   double volume;
 };
-const std::array<Known, 4> all{{{ElementType::hex8, cube, 6, 1.0},
+const std::vector<Point> hex27 = [] {
+  std::vector<Point> points;
+  for (std::size_t k = 0; k < 27; ++k) points.push_back(reference_vertex(27, k));
+  return points;
+}();
+const std::array<Known, 5> all{{{ElementType::hex27, hex27, 48, 1.0},
+                                {ElementType::hex8, cube, 6, 1.0},
                                 {ElementType::wedge6, wedge, 3, 0.5},
                                 {ElementType::pyramid5, pyramid, 2, 1.0 / 3},
                                 {ElementType::tet10, tet10, 8, 1.0 / 6}}};
