@@ -23,7 +23,7 @@ constexpr double most_extents = 8;
 constexpr double thin = 0.1;
 /// So does one of which less than this part is independent of a quadratic polynomial of the wider ones:
 /// on a sphere, x² + y² + z² is constant, and a quadratic in three directions is not determined.
-constexpr double least_independent = 0.2;
+constexpr double least_part_of_axis = 0.2;
 /// Neighbours do not determine a term if no more than this part of it is independent of others.
 constexpr double least_part_of_term = 1e-4;
 /// The sum of the magnitudes of weights: errors of values grow by so much at most.
@@ -134,7 +134,7 @@ bool MovingLeastSquares::follows(std::size_t axis) {
     terms.append(column);
   }
   for (std::size_t j = 0; j < n; ++j) column[j] = importance_[j] * local_[j][axis];
-  return terms.append(column) < least_independent;
+  return terms.append(column) < least_part_of_axis;
 }
 
 MovingLeastSquares::Fit MovingLeastSquares::compute(const Point& at,
