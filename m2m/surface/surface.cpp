@@ -49,11 +49,6 @@ struct Collected {
       out.mesh.tets.push_back(volume.tets[static_cast<std::size_t>(t)]);
       out.tet_of_cell.push_back(t);
     }
-    const NativeElements& all = volume.elements;
-    if (!all.of_tet.empty())
-      out.mesh.elements.of_tet.insert(out.mesh.elements.of_tet.end(),
-                                      all.of_tet.begin() + range.first,
-                                      all.of_tet.begin() + range.second);
   }
   SurfaceMesh number(std::string_view part, std::int64_t id, const std::string& name) {
     if (out.mesh.tets.empty())
@@ -62,11 +57,6 @@ struct Collected {
     std::vector<VertexId> point_of(volume.n_points(), -1);
     for (const Tet& cell : out.mesh.tets)
       for (const VertexId v : cell) point_of[static_cast<std::size_t>(v)] = 0;
-    NativeElements& elements = out.mesh.elements;
-    for (const std::int64_t at : elements.of_tet)
-      if (at >= 0)
-        for (const VertexId v : volume.elements.vertices_at(at))
-          point_of[static_cast<std::size_t>(v)] = 0;
     for (std::size_t v = 0; v < point_of.size(); ++v) {
       if (point_of[v] < 0) continue;
       point_of[v] = static_cast<VertexId>(out.vertex_of_point.size());
@@ -75,9 +65,6 @@ struct Collected {
     }
     for (Tet& cell : out.mesh.tets)
       for (VertexId& v : cell) v = point_of[static_cast<std::size_t>(v)];
-    if (!elements.of_tet.empty()) elements.vertices = volume.elements.vertices;
-    for (auto at = elements.vertices.begin(); at != elements.vertices.end();)
-      for (VertexId n = *at++; n > 0; --n, ++at) *at = point_of[static_cast<std::size_t>(*at)];
     out.mesh.name = text(volume.name, ":", part);
     out.mesh.blocks = {{id, name, out.mesh.n_tets()}};
     return std::move(out);

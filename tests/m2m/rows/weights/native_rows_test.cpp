@@ -139,3 +139,20 @@ TEST_CASE("in an element that folds over, values are linear and counted", "[m2m]
   CHECK(n_linear > 0);
   CHECK(n_equal == n_linear);
 }
+
+TEST_CASE("damaged elements are refused", "[m2m][native]") {
+  const TetMesh mesh = element_mesh(ElementType::hex8, 2);
+  (void)validate(mesh);
+  const auto refused = [](TetMesh damaged, const char* message) {
+    CHECK_THROWS_WITH(validate(damaged), Contains(message));
+  };
+  TetMesh damaged = mesh;
+  damaged.elements.of_tet.pop_back();
+  refused(damaged, "elements of 47 of 48 tetrahedra are given");
+  damaged = mesh;
+  damaged.elements.of_tet[7] += 1;
+  refused(damaged, "the element of tetrahedron 7 begins at");
+  damaged = mesh;
+  std::swap(damaged.elements.of_tet[7], damaged.elements.of_tet[13]);
+  refused(damaged, "which is no vertex of its element");
+}
