@@ -65,6 +65,7 @@ struct MeshSurvey {
   double longest_edge = 0;
   double volume = 0;               ///< sum of measure(), the same bits for any number of PEs
   std::string skipped{}, split{};  ///< as skipped_text() and split_text()
+  std::int32_t dimension = 3;      ///< TetMesh::dimension
 };
 
 /// True if place() and survey() read the mesh in ranges, so that no PE holds all of it. False for a

@@ -6,6 +6,7 @@
 #include "apps/m2m_transfer/result_format.hpp"
 #include "apps/m2m_transfer/run/measure.hpp"
 #include "apps/m2m_transfer/run/reference.hpp"
+#include "apps/m2m_transfer/run/steps.hpp"
 #include "apps/m2m_transfer/study/drift.hpp"
 #include "apps/m2m_transfer/study/pes.hpp"
 #include "apps/m2m_transfer/study/steps.hpp"
@@ -49,6 +50,20 @@ std::vector<TransferKind> kinds_of(const kit::Driver& driver, const Options& opt
     for (const TransferKind kind : all_transfer_kinds) check_kind(kind, request);
   }
   return {all_transfer_kinds.begin(), all_transfer_kinds.end()};
+}
+
+/// Adds to `left_out` why a run is not possible with its kind; true if it is.
+bool has_kind(const Problem& problem, std::string& left_out) {
+  try {
+    check(options_of(problem));
+    for (const Pair& pair : problem.pairs)
+      require_dimensions(problem.kind, problem.tolerance, problem.source_of(pair).survey.dimension,
+                         problem.target_of(pair).survey.dimension);
+    return true;
+  } catch (const tess::Error& error) {
+    left_out += text("left out: ", error.what(), "\n");
+    return false;
+  }
 }
 
 Task move_files(const Options& options, kit::Driver& driver) {
@@ -148,23 +163,26 @@ Task transfer_all_kinds(const Options& options, kit::Driver& driver) {
   const Problem read_once = co_await read(request, driver.progress());
   const auto gauge = create<Gauge>(each_pe);
   Reports reports;
+  std::string left_out;
   for (const TransferKind kind : kinds) {
     driver.progress().part(reports.size() / read_once.pairs.size() + 1, kinds.size());
     Problem problem = read_once;
     problem.kind = kind;
+    if (!has_kind(problem, left_out)) continue;
     for (TransferReport& report : problem.reports) report.kind = name_of(kind);
     explain_to_user(driver, text(name_of(kind), ": ", explain(problem, Output::report)));
     co_await measure(problem, gauge, driver.progress());
     reports.insert(reports.end(), problem.reports.begin(), problem.reports.end());
-    if (kind == kinds.back()) co_await add_reference(options, problem, driver.progress(), reports);
   }
+  co_await add_reference(options, read_once, driver.progress(), reports);
   write_reports(driver, reports);
   driver.progress().clear();
   print(fmt::format("every kind on {}, {} chares per mesh\n", machine().describe(),
                     read_once.chares()),
         field_rows().table(rows_of(reports)),
         "errors over all vertices, and over those found; integral: that over the target without "
-        "that over the source\n");
+        "that over the source\n",
+        left_out);
 }
 
 std::string folder_of(const Options& options) {
@@ -184,10 +202,12 @@ Task run_study(const Options& options, kit::Driver& driver) {
   const std::int32_t repeat = options.repeat.value_or(3);
   const auto gauge = create<Gauge>(each_pe);
   Reports reports;
+  std::string left_out;
   for (Request& request : requests) {
     driver.progress().part(reports.size() + 1, requests.size());
     request.repeat = repeat;
     Problem problem = co_await read(request, driver.progress());
+    if (kinds.size() > 1 && !has_kind(problem, left_out)) continue;
     explain_to_user(driver, explain(problem, Output::report));
     co_await measure(problem, gauge, driver.progress());
     reports.push_back(problem.reports.front());
@@ -208,7 +228,7 @@ Task run_study(const Options& options, kit::Driver& driver) {
         held.empty() ? "" : check_rows().table(held),
         "fitted powers (over all): error ~ edge^p, error ~ seconds^q; exact: relative L2 below "
         "1e-12 everywhere\n",
-        trend_rows().table(orders));
+        trend_rows().table(orders), left_out);
   write(driver, folder, {"study", field_rows().csv(rows), pictures_of(reports)},
         field_rows().json(rows),
         {{"definitions", definitions()},

@@ -58,9 +58,10 @@ struct TransferReport {
   OtherElements source_elements, target_elements;
   std::int32_t pes = 0, processes = 0, chares = 0;
   std::size_t source_tets = 0, targets = 0;
-  double source_edge = 0;  ///< of a cube with the volume of six average tetrahedra
-  Tally tally;             ///< of the last search
-  WorstPlaces worst;       ///< of the last search
+  std::int32_t source_dimension = 3;  ///< TetMesh::dimension
+  double source_edge = 0;             ///< of a cube with the volume of six average tetrahedra
+  Tally tally;                        ///< of the last search
+  WorstPlaces worst;                  ///< of the last search
   std::int32_t searches = 1;
   std::vector<FieldError> fields;
   Point worst_at{};  ///< the vertex with the largest error of the first field

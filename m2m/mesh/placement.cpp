@@ -270,6 +270,7 @@ MeshSurvey survey(const TetMesh& mesh) {
   out.volume = extent.volume.total();
   out.skipped = skipped_text(mesh);
   out.split = split_text(mesh);
+  out.dimension = mesh.dimension;
   return out;
 }
 

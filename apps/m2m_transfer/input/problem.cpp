@@ -95,10 +95,11 @@ Task read_meshes(const Request& request, Problem& problem) {
 
 /// The edge of a cube with the volume of six average tetrahedra, 1/N for kuhn:N, or of a square with
 /// the area of two average triangles.
-double typical_edge(const RunMesh& mesh) {
-  const std::int32_t dimension = mesh.mesh ? mesh.mesh->dimension : 3;
-  const double each = mesh.survey.volume / static_cast<double>(mesh.survey.n_tets);
-  return dimension == 3 ? std::cbrt(6 * each) : dimension == 2 ? std::sqrt(2 * each) : each;
+double typical_edge(const MeshSurvey& mesh) {
+  const double each = mesh.volume / static_cast<double>(mesh.n_tets);
+  return mesh.dimension == 3   ? std::cbrt(6 * each)
+         : mesh.dimension == 2 ? std::sqrt(2 * each)
+                               : each;
 }
 
 TransferReport report_of(const Problem& problem, const Pair& pair, const Request& request) {
@@ -126,7 +127,8 @@ TransferReport report_of(const Problem& problem, const Pair& pair, const Request
   report.chares = request.chares();
   report.voxel = problem.voxel[0];
   report.source_tets = static_cast<std::size_t>(source.survey.n_tets);
-  report.source_edge = typical_edge(source);
+  report.source_edge = typical_edge(source.survey);
+  report.source_dimension = source.survey.dimension;
   report.targets = static_cast<std::size_t>(target.survey.n_points);
   return report;
 }

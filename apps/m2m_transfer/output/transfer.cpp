@@ -14,8 +14,8 @@ double megabytes(std::uint64_t bytes) {
 
 std::string mesh_line(const char* side, const MeshSurvey& mesh) {
   const MeshCensus& census = mesh.census;
-  std::string line =
-      fmt::format("  {}: {} vertices, {} tetrahedra", side, mesh.n_points, mesh.n_tets);
+  std::string line = fmt::format("  {}: {} vertices, {} {}", side, mesh.n_points, mesh.n_tets,
+                                 cells_of(mesh.dimension));
   if (census.n_flat != 0) line += fmt::format(", {} of them flat", census.n_flat);
   if (census.n_inverted != 0) line += fmt::format(", {} inverted", census.n_inverted);
   if (census.n_unused != 0) line += fmt::format(", {} vertices unused", census.n_unused);
@@ -54,13 +54,14 @@ std::string table(const TransferReport& r) {
   out += fmt::format("{} -> {}\n", r.source, r.target);
   line("machine", r.machine);
   const std::size_t n_chares = static_cast<std::size_t>(r.chares);
-  line("chares",
-       fmt::format("{} per mesh{}{}", r.chares,
-                   n_chares <= r.source_tets ? ""
-                                             : fmt::format(", {} of them without a tetrahedron",
-                                                           n_chares - r.source_tets),
-                   r.voxel == 0 ? "" : fmt::format(", voxels of {:.4g}", r.voxel)));
-  line("vertices", fmt::format("{} from {} tetrahedra", r.targets, r.source_tets));
+  line("chares", fmt::format("{} per mesh{}{}", r.chares,
+                             n_chares <= r.source_tets
+                                 ? ""
+                                 : fmt::format(", {} of them without {}", n_chares - r.source_tets,
+                                               cells_of(r.source_dimension)),
+                             r.voxel == 0 ? "" : fmt::format(", voxels of {:.4g}", r.voxel)));
+  line("vertices",
+       fmt::format("{} from {} {}", r.targets, r.source_tets, cells_of(r.source_dimension)));
   for (const auto& [title, elements] : lines_of(r.source_elements, r.target_elements))
     line(title, elements);
   line("found", found_text(r.tally.counts));

@@ -13,11 +13,7 @@ void keep_least(double& least, double value) {
 
 }  // namespace
 
-GraphRun::GraphRun(Problem& problem, std::vector<DistributedMesh>& meshes, kit::Progress& progress)
-    : problem_(problem),
-      meshes_(meshes),
-      progress_(progress),
-      on_phase_([&progress](const char* name) { progress.phase(name); }) {
+TransferOptions options_of(const Problem& problem) {
   TransferOptions options;
   options.voxel_size = problem.voxel;
   options.policy = problem.policy;
@@ -25,6 +21,15 @@ GraphRun::GraphRun(Problem& problem, std::vector<DistributedMesh>& meshes, kit::
   options.tolerance = problem.tolerance;
   options.clamp = problem.clamp;
   options.order = problem.order;
+  return options;
+}
+
+GraphRun::GraphRun(Problem& problem, std::vector<DistributedMesh>& meshes, kit::Progress& progress)
+    : problem_(problem),
+      meshes_(meshes),
+      progress_(progress),
+      on_phase_([&progress](const char* name) { progress.phase(name); }) {
+  TransferOptions options = options_of(problem);
   options.on_phase = &on_phase_;
   for (const Pair& pair : problem.pairs)
     transfers_.emplace_back(meshes[pair.source], meshes[pair.target], options);

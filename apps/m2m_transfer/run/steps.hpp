@@ -3,6 +3,7 @@
 
 #include "apps/m2m_transfer/run/meshes.hpp"
 #include "m2m/field_norms.hpp"
+#include "m2m/transfer.hpp"
 
 #include <cstdint>
 #include <functional>
@@ -16,6 +17,9 @@ struct PairAudit {
   std::vector<FieldNorms> target;  ///< per field: what it wrote, against the formulas
   std::uint64_t result_hash = 0;   ///< of what it wrote
 };
+
+/// What all pairs of a run have in common.
+TransferOptions options_of(const Problem& problem);
 
 class GraphRun {
  public:
