@@ -4,10 +4,10 @@
 set -euo pipefail
 cd "$1"
 limits=(
-  m2m_transfer 5050
-  libraries 6700
-  tests 20100
-  everything 33300
+  m2m_transfer 5500
+  libraries 7000
+  tests 21300
+  everything 34800
 )
 # objects NAME: those that the build has.
 objects() {

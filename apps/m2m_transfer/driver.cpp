@@ -39,29 +39,34 @@ void write_meshes(const std::string& path, const Problem& problem) {
                    *problem.meshes[m].mesh, problem.meshes[m].fields);
 }
 
-/// The kinds of a table of kinds. Options that only some of them know are refused before the first
-/// runs.
+/// The kinds of a table of kinds.
 std::vector<TransferKind> kinds_of(const kit::Driver& driver, const Options& options) {
   if (driver.is_given("--kind") && options.request.kind != "all")
     return {parse_transfer_kind(options.request.kind)};
-  for (const std::string& policy : options.policies) {
-    Request request = options.request;
-    request.policy = policy;
-    for (const TransferKind kind : all_transfer_kinds) check_kind(kind, request);
-  }
   return {all_transfer_kinds.begin(), all_transfer_kinds.end()};
 }
 
-/// Adds to `left_out` why a run is not possible with its kind; true if it is.
-bool has_kind(const Problem& problem, std::string& left_out) {
+/// Options that only some kinds know are refused before the first of many runs.
+void check_kinds(const std::vector<TransferKind>& kinds, const Options& options) {
+  Request request = options.request;
+  for (const std::string& policy : options.policies) {
+    request.policy = policy;
+    for (const TransferKind kind : kinds) check_kind(kind, request);
+  }
+}
+
+/// Adds to `left_out`, once, why a run is not possible with its kind; true if it is.
+bool has_kind(const Problem& problem, const Request& request, std::string& left_out) {
   try {
+    check_kind(problem.kind, request);
     check(options_of(problem));
     for (const Pair& pair : problem.pairs)
       require_dimensions(problem.kind, problem.tolerance, problem.source_of(pair).survey.dimension,
                          problem.target_of(pair).survey.dimension);
     return true;
   } catch (const tess::Error& error) {
-    left_out += text("left out: ", error.what(), "\n");
+    const std::string line = text("left out: ", error.what(), "\n");
+    if (left_out.find(line) == std::string::npos) left_out += line;
     return false;
   }
 }
@@ -77,6 +82,7 @@ Task drift_table(const Options& options, kit::Driver& driver) {
   Request request = options.request;
   const std::vector<std::int32_t> trips = parse_trips(options.round_trips);
   const std::vector<TransferKind> kinds = kinds_of(driver, options);
+  check_kinds(kinds, options);
   request.kind = name_of(kinds.front());
   kit::make_folder("--plot", options.plot);
   Drift drift;
@@ -164,17 +170,19 @@ Task transfer_all_kinds(const Options& options, kit::Driver& driver) {
   const auto gauge = create<Gauge>(each_pe);
   Reports reports;
   std::string left_out;
+  Problem measured;  // linear is possible with any meshes
   for (const TransferKind kind : kinds) {
     driver.progress().part(reports.size() / read_once.pairs.size() + 1, kinds.size());
     Problem problem = read_once;
     problem.kind = kind;
-    if (!has_kind(problem, left_out)) continue;
+    if (!has_kind(problem, request, left_out)) continue;
     for (TransferReport& report : problem.reports) report.kind = name_of(kind);
     explain_to_user(driver, text(name_of(kind), ": ", explain(problem, Output::report)));
     co_await measure(problem, gauge, driver.progress());
     reports.insert(reports.end(), problem.reports.begin(), problem.reports.end());
+    measured = std::move(problem);
   }
-  co_await add_reference(options, read_once, driver.progress(), reports);
+  co_await add_reference(options, measured, driver.progress(), reports);
   write_reports(driver, reports);
   driver.progress().clear();
   print(fmt::format("every kind on {}, {} chares per mesh\n", machine().describe(),
@@ -191,28 +199,36 @@ std::string folder_of(const Options& options) {
   return folder;
 }
 
+std::vector<std::string> kinds_of_study(const kit::Driver& driver, const Options& options) {
+  if (options.study != "kind" && options.request.kind != "all") return {options.request.kind};
+  const std::vector<TransferKind> kinds = kinds_of(driver, options);
+  check_kinds(kinds, options);
+  std::vector<std::string> names;
+  for (const TransferKind kind : kinds) names.emplace_back(name_of(kind));
+  return names;
+}
+
 Task run_study(const Options& options, kit::Driver& driver) {
-  std::vector<std::string> kinds{options.request.kind};
-  if (options.study == "kind" || options.request.kind == "all") {
-    kinds.clear();
-    for (const TransferKind kind : kinds_of(driver, options)) kinds.emplace_back(name_of(kind));
-  }
+  const std::vector<std::string> kinds = kinds_of_study(driver, options);
   std::vector<Request> requests = plan_study(options.request, options.policies, kinds);
   const std::string folder = folder_of(options);
   const std::int32_t repeat = options.repeat.value_or(3);
   const auto gauge = create<Gauge>(each_pe);
   Reports reports;
   std::string left_out;
+  Problem measured;
   for (Request& request : requests) {
     driver.progress().part(reports.size() + 1, requests.size());
     request.repeat = repeat;
     Problem problem = co_await read(request, driver.progress());
-    if (kinds.size() > 1 && !has_kind(problem, left_out)) continue;
-    explain_to_user(driver, explain(problem, Output::report));
-    co_await measure(problem, gauge, driver.progress());
-    reports.push_back(problem.reports.front());
+    if (kinds.size() == 1 || has_kind(problem, request, left_out)) {
+      explain_to_user(driver, explain(problem, Output::report));
+      co_await measure(problem, gauge, driver.progress());
+      reports.push_back(problem.reports.front());
+      measured = std::move(problem);
+    }
     if (request.kind == kinds.back() && request.policy == options.policies.back())
-      co_await add_reference(options, problem, driver.progress(), reports);
+      co_await add_reference(options, measured, driver.progress(), reports);
   }
   driver.progress().clear();
   const std::vector<FieldRow> rows = rows_of(reports);

@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <set>
+#include <utility>
 
 namespace m2m_transfer {
 namespace {
@@ -33,8 +34,8 @@ void add_meshes(kit::Driver& driver, Request& request) {
   driver.option("TARGET", request.target, "mesh of the same kinds");
   driver.in(runs | file_modes);
   driver.option("--source-part NAME", request.source_part,
-                "a part of SOURCE as the source: skin, or a side set or block by name or number "
-                "(surfaces of ExodusII and gmsh files)");
+                "a surface of SOURCE as the source: its skin, a side set by name or number, or a "
+                "block likewise, whose skin it is if it is of solids (ExodusII and gmsh files)");
   driver.option("--target-part NAME", request.target_part, "a part of TARGET likewise");
   driver.in(runs);
   driver.option("MORE", request.more, "further meshes of the same kinds, for --pairs");
@@ -199,6 +200,11 @@ void read_study(Options& options) {
 /// What the modes do not say.
 void check_values(const kit::Driver& driver, const Options& options) {
   const Request& request = options.request;
+  for (const auto& [option, part] : {std::pair("--source-part", request.source_part),
+                                     std::pair("--target-part", request.target_part)})
+    if (driver.is_given(option) && part.empty())
+      fail(ErrorCode::bad_argument, option,
+           " '' names no part; give a name or a number, or leave the option out");
   driver.refuse_both("--chares", "--per-pe");
   driver.refuse_both("--steps", "--weights");  // these are of one place
   driver.refuse_both("--move", "--weights");

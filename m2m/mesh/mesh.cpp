@@ -37,10 +37,10 @@ std::string split_text(const TetMesh& mesh) {
   for (const SplitElements& split : mesh.split) {
     if (!out.empty()) out += ", ";
     out += std::to_string(split.n_elements) + " " + split.type + " into " +
-           std::to_string(split.n_tets) + " tetrahedra";
+           std::to_string(split.n_tets) + " " + cells_of(mesh.dimension);
     if (split.n_folded > 0)
       out += " (" + std::to_string(split.n_folded) +
-             " folded, so that their tetrahedra overlap: check the order of their vertices)";
+             " folded, so that their parts overlap: check the order of their vertices)";
   }
   return out;
 }

@@ -81,6 +81,9 @@ refuses "--vector sin: the field has 1 component, and a vector has 3" "${transfe
 refuses "--repeat .* --move" "${transfer[@]}" kuhn:2 kuhn:2 --repeat 2 --steps 2 --move 'translate(1,0,0)'
 refuses "--round-trips: '2,1'" "$bin/m2m_transfer" --json "$scratch/result.json" kuhn:2 kuhn:2 --round-trips 2,1
 "$bin/m2m_transfer" kuhn:2 kuhn:2 --round-trips 1 --kind all >"$scratch/out" || fail "--round-trips refuses --kind all"
+"$bin/m2m_transfer" kuhn:2 kuhn:3 --kind all --clamp --reference radial-basis --field x >"$scratch/out" || fail "--kind all refuses --clamp"
+grep -q "^radial-basis" "$scratch/out" && grep -q "^left out: --clamp .*, and conservative " "$scratch/out" ||
+  fail "--kind all --clamp: no row of the reference, or no word on what it leaves out"
 refuses "--move .* --round-trips" "$bin/m2m_transfer" kuhn:2 kuhn:2 --round-trips 1 --move 'translate(1,0,0)'
 refuses "--order 2 is for kind moving-least-squares, not linear" "${transfer[@]}" kuhn:2 kuhn:2 --order 2
 refuses "--reference rbf is unknown; choose radial-basis" "${transfer[@]}" kuhn:2 kuhn:2 --reference rbf
@@ -117,7 +120,8 @@ refuses "--repeat 3 does not work with --weights" "${alone[@]}" --repeat 3 --wei
 refuses "--out .* does not work with --kind all" "${alone[@]}" --kind all --out "$scratch/all.exo"
 refuses "--picture .* --kind all" "${alone[@]}" --kind all --picture "$scratch/cut.svg"
 refuses "--kind all does not work with --study steps" "${alone[@]}" --kind all --study steps
-refuses "--policy nearest is for kinds that interpolate, and conservative" "${alone[@]}" --kind all --policy nearest
+refuses "--policy nearest is for kinds that interpolate, and conservative" "${alone[@]}" --kind conservative --policy nearest
+refuses "--source-part ''.* names no part" "${alone[@]}" --source-part ""
 refuses "--clamp is for kinds that interpolate" "${alone[@]}" --kind conservative --clamp
 cp "$scratch/box.msh" "$scratch/kept.msh"
 refuses "would overwrite TARGET" "$bin/m2m_transfer" kuhn:2 "$scratch/kept.msh" --out "$scratch/./kept.msh"

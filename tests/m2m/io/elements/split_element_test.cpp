@@ -165,7 +165,7 @@ TEST_CASE("a hexahedron whose vertices stand in the order of a voxel is folded",
   splitter.add(ElementType::hex8, std::array{0, 1, 3, 2, 4, 5, 7, 6});
   splitter.finish();
   CHECK(split_text(mesh) ==
-        "2 HEX8 into 12 tetrahedra (1 folded, so that their tetrahedra overlap: check the order of "
+        "2 HEX8 into 12 tetrahedra (1 folded, so that their parts overlap: check the order of "
         "their vertices)");
 }
 
