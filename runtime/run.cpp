@@ -5,6 +5,7 @@
 #include "runtime/core/check.hpp"
 #include "runtime/core/number.hpp"
 #include "runtime/pe/interfaces/process_monitor.hpp"
+#include "runtime/pe/interfaces/seed_search.hpp"
 #include "runtime/pe/pe.hpp"
 #include "runtime/pe/runtime.hpp"
 #include "runtime/watch/service/service.hpp"
@@ -225,6 +226,18 @@ MachineChoice take_values(int& argc, char** argv, RuntimeOptions& options) {
   return choice;
 }
 
+/// The seeds of --sim seeds=FIRST..LAST, which stays in the command line.
+std::optional<detail::SeedRange> seeds_of(int argc, char** argv) {
+  for (int i = 1; i < argc; ++i) {
+    const std::string_view word = argv[i];
+    std::optional<std::string> keys;
+    if (word == "--sim" && i + 1 < argc) keys = argv[i + 1];
+    if (word.starts_with("--sim=")) keys = word.substr(6);
+    if (keys && keys->find("seeds=") != std::string::npos) return parse_simulated(*keys).seeds;
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 std::string options_help() {
@@ -234,6 +247,9 @@ std::string options_help() {
       "  --sim KEYS  run on a simulated machine: "
       "pes=8,per-process=2,latency=2us,bandwidth=10GB/s,cost=100ns,\n"
       "              seed=7 (adversarial delivery order), migrate=0.1 (forced migrations),\n"
+      "              seeds=1..200 (once per seed: which order of messages prints something "
+      "else?),\n"
+      "              compare=WORD (and only lines with this word count),\n"
       "              file=FILE (the machine that bench --calibrate FILE measured)\n"
       "  --message-memory SIZE\n"
       "              most bytes of messages under way from one process to another (default "
@@ -276,10 +292,16 @@ Setup take_options(int& argc, char** argv) {
          ": each process of the job would simulate the whole machine; start the program without "
          "mpirun, and write --sim pes=N,per-process=M,… for processes of M PEs");
   if (choice.simulated) {
-    const SimulatedOptions options = parse_simulated(*choice.simulated);
+    SimulatedOptions options = parse_simulated(*choice.simulated);
+    if (detail::disturb != nullptr) {
+      (*detail::disturb)(options, setup.options);
+    } else if (options.seeds) {
+      fail(ErrorCode::bad_argument, "--sim seeds=", options.seeds->first, "..", options.seeds->last,
+           ": this program does not start by tess::run(argc, argv, …) or tess::guarded()");
+    }
     setup.machine = make_simulated_machine(options);
     setup.options.seed = options.seed.value_or(1);
-    setup.options.migration_chance = migration_chance(options);
+    if (detail::disturb == nullptr) setup.options.migration_chance = migration_chance(options);
   } else if (is_in_job()) {
     setup.machine = make_mpi_machine(argc, argv, MpiOptions{.pes_per_process = choice.pes});
   } else {
@@ -319,6 +341,13 @@ int guarded(const char* program, const std::function<int()>& body) {
 int guarded(int& argc, char** argv, const std::function<int(Setup&)>& body) {
   Setup setup;
   try {
+    const bool may_search = detail::disturb == nullptr && processes_of_job() == 1;
+    if (const auto seeds = may_search ? seeds_of(argc, argv) : std::nullopt) {
+      if (detail::search_seeds == nullptr)
+        fail(ErrorCode::bad_argument, "--sim seeds=", seeds->first, "..", seeds->last,
+             ": this program has no search for races; link it with Tessera::testing");
+      return detail::search_seeds(*seeds, [&] { return guarded(argc, argv, body); });
+    }
     setup = take_options(argc, argv);
     unread = {&argc, argv};
     const int code = body(setup);

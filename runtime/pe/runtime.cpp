@@ -4,6 +4,7 @@
 #include "runtime/core/check.hpp"
 #include "runtime/core/hash.hpp"
 #include "runtime/pe/census.hpp"
+#include "runtime/pe/interfaces/seed_search.hpp"
 #include "runtime/pe/measure/critical_path.hpp"
 #include "runtime/pe/pe_action.hpp"
 #include "runtime/pe/report/pe_watch.hpp"
@@ -16,6 +17,8 @@
 namespace tess::detail {
 
 std::unique_ptr<ProcessMonitor> (*make_monitor)(Runtime&, const MonitorOptions&) = nullptr;
+int (*search_seeds)(const SeedRange&, const std::function<int()>&) = nullptr;
+const Disturb* disturb = nullptr;
 
 namespace {
 

@@ -54,6 +54,11 @@ refuses "--voxel: -1 is not a number above 0" "${transfer[@]}" kuhn:2 kuhn:2 --v
 refuses "^m2m_transfer: error: --voxel 1e-12 .* at least" "${transfer[@]}" kuhn:2 kuhn:2 --pes 2 --voxel 1e-12
 refuses --sim "${transfer[@]}" kuhn:2 kuhn:2 --sim pes=none
 refuses --pes "$bin/hello" --pes 0
+refuses "--sim seeds=1..9: this program has no search for races; link it with Tessera::testing" "$bin/hello" --sim seeds=1..9
+for wrong in "seeds=5..2" "seeds=5" "compare=x" "seeds=1..3,seed=2" "seeds=1..3,compare=never-printed"; do
+  refuses "--sim [a-z]*: .*" "$bin/ring" --sim "$wrong"
+done
+refuses "--sim seeds=1..3 --pes 2" "$bin/ring" --pes 2 --sim seeds=1..3
 "$bin/hello" >/dev/full 2>"$scratch/err"
 [[ $? -eq 2 ]] && grep -q "standard output: a part of it could not be written" "$scratch/err" && pass || fail "lost output is no error"
 refuses "--pes: 100000 is not a whole number from 1 to 4096" "$bin/hello" --pes 100000

@@ -1,7 +1,7 @@
 // The driver of seeds: runs them here, and a seed that fails again and again in child processes.
 #include "runtime/core/check.hpp"
 #include "runtime/more/testing.hpp"
-#include "runtime/more/testing/apart.hpp"
+#include "runtime/more/testing/explain.hpp"
 #include "runtime/more/testing/shrink.hpp"
 #include "runtime/more/testing/trial.hpp"
 
@@ -64,7 +64,8 @@ std::string indented(const std::string& lines) {
   return out;
 }
 
-/// `facts` says how many decisions there are and where they come from.
+}  // namespace
+
 std::string report_of(const Repeat& repeat, const Outcome& outcome, const std::string& facts,
                       const std::string& name) {
   std::string out =
@@ -72,6 +73,8 @@ std::string report_of(const Repeat& repeat, const Outcome& outcome, const std::s
   for (const std::string& sentence : outcome.words) out += "\n    " + sentence;
   return out + "\n  repeat with: " + repeat_line(repeat, name);
 }
+
+namespace {
 
 std::string count(std::size_t n, const char* one, const char* several) {
   return text(n, " ", n == 1 ? one : several);
@@ -96,8 +99,8 @@ Found shrink_seed(const Program& program, std::uint64_t seed, const Outcome& out
   return {seed, outcome, shrink(outcome.taken.value_or(DecisionIds{}), fails, most_tries)};
 }
 
-/// Shrinks a failure, and describes it. If it needs several decisions, one of the next seeds may
-/// show the same with fewer.
+}  // namespace
+
 std::string explain(const Program& program, std::uint64_t seed, std::uint64_t end,
                     const Outcome& first, const SeedOptions& options) {
   constexpr std::uint64_t most_seeds = 20;
@@ -135,6 +138,8 @@ std::string explain(const Program& program, std::uint64_t seed, std::uint64_t en
                : ", which is the limit (SeedOptions::most_tries); these are left:"),
       options.name);
 }
+
+namespace {
 
 // What a run that ends the process in its midst needs. Only one for_seeds() runs at a time.
 struct Running {

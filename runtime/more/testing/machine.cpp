@@ -1,5 +1,5 @@
 #include "runtime/more/testing.hpp"
-#include "runtime/more/testing/decisions.hpp"
+#include "runtime/more/testing/disorder.hpp"
 #include "runtime/more/testing/trial.hpp"
 #include "runtime/wire/machine/simulated.hpp"
 
@@ -66,31 +66,13 @@ Result Machine::run_message(std::function<void()> main) const {
   simulated.migration_chance = migration;
   simulated.most_events = most_events;
   simulated.most_time = most_time;
-  // A program may run several machines with one seed.
-  detail::Decisions decisions({.seed = mix(seed ^ mix(trial->n_runs++)),
-                               .n_pes = pes,
-                               .latency = latency,
-                               .reordering = reordering,
-                               .migration = migration_chance(simulated),
-                               .keep = trial->keep ? &*trial->keep : nullptr,
-                               .in_words = trial->in_words},
-                              trial->taken);
-  simulated.adversary = &decisions;
-  const std::vector<std::string> earlier = trial->words;
-  trial->update_words = [trial, earlier, &decisions] {
-    trial->words = earlier;
-    for (std::string& sentence : decisions.in_words()) trial->words.push_back(std::move(sentence));
-  };
-
   Result result;
-  Setup setup{make_simulated_machine(simulated), options};
-  setup.options.seed = seed;
-  setup.options.mover = &decisions;
-  setup.options.signals = false;  // a thread per run
+  RuntimeOptions all = options;
+  const detail::Disorder disorder(*trial, simulated, all, reordering);
+  Setup setup{make_simulated_machine(simulated), all};
   setup.options.report = [&result](const std::string& line) { result.report.push_back(line); };
   result.exit_code = run_on(setup, std::move(main));
   result.exception = exception_in(result.report);
-  std::exchange(trial->update_words, nullptr)();
   return result;
 }
 

@@ -13,6 +13,8 @@
 namespace tess::detail {
 namespace {
 
+constexpr std::int64_t most_seed = 9'000'000'000'000'000;
+
 /// "2us" of the key "latency"; `place` names both for an error: "--sim latency", "here.sim:3:
 /// latency".
 struct Value {
@@ -60,6 +62,18 @@ struct Value {
            most);
     return static_cast<std::int64_t>(value);
   }
+  /// "1..200".
+  [[nodiscard]] SeedRange range() const {
+    const std::size_t dots = text.find("..");
+    if (dots == std::string::npos)
+      fail(ErrorCode::bad_argument, place, ": ", text, " is no range such as 1..200");
+    const Value first{place, text.substr(0, dots)}, last{place, text.substr(dots + 2)};
+    SeedRange range;
+    range.first = static_cast<std::uint64_t>(first.whole(0, most_seed));
+    range.last =
+        static_cast<std::uint64_t>(last.whole(static_cast<std::int64_t>(range.first), most_seed));
+    return range;
+  }
   [[nodiscard]] double probability() const {
     std::string_view unit;
     const double value = number(&unit);
@@ -102,7 +116,14 @@ bool take_of_run(const std::string& key, const Value& value, SimulatedOptions& o
   } else if (key == "per-process") {
     options.pes_per_process = static_cast<std::int32_t>(value.whole(1, 1 << 20));
   } else if (key == "seed") {
-    options.seed = static_cast<std::uint64_t>(value.whole(0, 9'000'000'000'000'000));
+    options.seed = static_cast<std::uint64_t>(value.whole(0, most_seed));
+  } else if (key == "seeds") {
+    const std::string compare = options.seeds ? options.seeds->compare : "";
+    options.seeds = value.range();
+    options.seeds->compare = compare;
+  } else if (key == "compare") {
+    if (!options.seeds) options.seeds.emplace();
+    options.seeds->compare = value.text;
   } else if (key == "cost") {
     options.cost.reset();
     if (value.text != "measured") options.cost = value.time();
@@ -165,9 +186,15 @@ SimulatedOptions parse_simulated(const std::string& given) {
       read_simulated_file(value.text, options);
     } else if (!take_of_machine(key, value, options) && !take_of_run(key, value, options)) {
       fail(ErrorCode::bad_argument, "--sim: unknown key ", key,
-           " (pes, per-process, cost, seed, migrate, file, ", machine_keys, ")");
+           " (pes, per-process, cost, seed, seeds, compare, migrate, file, ", machine_keys, ")");
     }
   }
+  if (options.seeds && options.seeds->first > options.seeds->last)
+    fail(ErrorCode::bad_argument, "--sim compare: ", options.seeds->compare,
+         " is for seeds=FIRST..LAST, which is missing");
+  if (options.seeds && options.seed)
+    fail(ErrorCode::bad_argument, "--sim seed: ", *options.seed,
+         " is one of many beside seeds=FIRST..LAST; leave it out");
   if (options.pes_per_process != 0 && options.n_pes % options.pes_per_process != 0)
     fail(ErrorCode::bad_argument, "--sim: ", options.n_pes, " PEs do not divide into processes of ",
          options.pes_per_process);

@@ -27,6 +27,12 @@ struct Wire {
   double copy = 0;
 };
 
+/// The seeds of a search for a race: a run each, which prints the same as in the plain order.
+struct SeedRange {
+  std::uint64_t first = 1, last = 0;
+  std::string compare{};  ///< only lines with this text are compared
+};
+
 struct SimulatedOptions {
   std::int32_t n_pes = 4;
   std::int32_t pes_per_process = 0;  ///< 0: one process, or drawn from the seed if there is one
@@ -49,6 +55,7 @@ struct SimulatedOptions {
   Time most_time{};  ///< virtual
   /// If present: it chooses the disorder, and the seed only the processes. Not owned.
   Adversary* adversary = nullptr;
+  std::optional<SeedRange> seeds{};  ///< of --sim seeds=1..200
 
   [[nodiscard]] Wire within_process() const { return {latency, bandwidth, overhead, 0}; }
   [[nodiscard]] Wire between_processes() const {
