@@ -64,6 +64,7 @@ int run_disturbed(const std::function<int()>& program, std::uint64_t seed) {
     simulated.seed = seed;
     if (!simulated.cost) simulated.cost = Time(100);  // with which a run repeats bit for bit
     simulated.watches_cost = false;
+    if (simulated.pes_per_process == 0) simulated.pes_per_process = simulated.n_pes;  // as it prints
     disorder.emplace(*current_trial(), simulated, options, 0.5);
   };
   struct Reset {
