@@ -66,7 +66,7 @@ no_growth() {
   fi
 }
 no_growth "${small[@]}" --pes 2
-exits 0 "400 per mesh, 16 of them without a tetrahedron" "$bin/m2m_transfer" kuhn:4 kuhn:3 --pes 1 --chares 400
+exits 0 "400 per mesh, 16 of them without tetrahedra" "$bin/m2m_transfer" kuhn:4 kuhn:3 --pes 1 --chares 400
 no_growth "${mpirun[@]}" -n 2 "${small[@]}" --pes 1
 
 finish
