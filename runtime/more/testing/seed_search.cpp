@@ -64,7 +64,8 @@ int run_disturbed(const std::function<int()>& program, std::uint64_t seed) {
     simulated.seed = seed;
     if (!simulated.cost) simulated.cost = Time(100);  // with which a run repeats bit for bit
     simulated.watches_cost = false;
-    if (simulated.pes_per_process == 0) simulated.pes_per_process = simulated.n_pes;  // as it prints
+    if (simulated.pes_per_process == 0)
+      simulated.pes_per_process = simulated.n_pes;  // as it prints
     disorder.emplace(*current_trial(), simulated, options, 0.5);
   };
   struct Reset {
@@ -101,19 +102,20 @@ std::string difference(std::string_view plain, std::string_view found) {
 /// What a run says beside its output.
 constexpr std::string_view success = "exit code 0\n";
 
-int search(const SeedRange& seeds, const std::function<int()>& program) {
+int search(const SeedRange& given, const std::function<int()>& program) {
   const auto output = [&](std::uint64_t seed) {
     const Capture capture;
     const int code = run_disturbed(program, seed);
     return text("exit code ", code, "\n", capture.text());
   };
   const std::optional<Repeat> repeat = requested_repeat();
-  const std::uint64_t first = repeat ? repeat->seed : seeds.first;
-  const Outcome plain = run_apart(output, first, {.keep = DecisionIds{}});
+  SeedRange seeds = given;
+  if (repeat) seeds.first = seeds.last = repeat->seed;
+  const Outcome plain = run_apart(output, seeds.first, {.keep = DecisionIds{}});
   if (!plain.failure.starts_with(success)) {  // it says why, here
     Trial trial{.keep = DecisionIds{}};
     const InTrial in(trial);
-    const int code = run_disturbed(program, first);
+    const int code = run_disturbed(program, seeds.first);
     if (code != 0) return code;
     fail(ErrorCode::bad_argument,
          "--sim seeds: the program does not end in the plain order: ", plain.failure);
@@ -132,7 +134,7 @@ int search(const SeedRange& seeds, const std::function<int()>& program) {
     return shown.starts_with(success) ? difference(expected, counted(shown))
                                       : shown.substr(0, shown.find('\n'));
   };
-  if (repeat) {
+  if (repeat && repeat->keep) {
     Trial trial{.keep = repeat->keep, .in_words = true};
     const Outcome outcome = run_here(compare, repeat->seed, trial);
     print_text(shown.substr(shown.find('\n') + 1));
@@ -144,8 +146,11 @@ int search(const SeedRange& seeds, const std::function<int()>& program) {
   for (std::uint64_t seed = seeds.first; seed <= seeds.last; ++seed) {
     const Outcome outcome = run_apart(compare, seed, {});
     if (outcome.failure.empty()) continue;
-    std::fprintf(stderr, "tessera: %s\n",
-                 explain(compare, seed, seeds.last + 1, outcome, {}).c_str());
+    std::fprintf(stderr, "tessera: %s%s\n",
+                 explain(compare, seed, seeds.last + 1, outcome, {}).c_str(),
+                 seeds.compare.empty()
+                     ? "\n  (times differ in any order: compare=WORD compares lines with WORD only)"
+                     : "");
     return 1;
   }
   print_text(expected);
