@@ -4,7 +4,7 @@
 set -euo pipefail
 cd "$1"
 limits=(
-  m2m_transfer 5500
+  m2m_transfer 5600
   libraries 7000
   tests 21300
   everything 34800
