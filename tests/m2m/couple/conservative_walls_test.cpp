@@ -8,6 +8,7 @@
 
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <random>
 
 using namespace tess;
@@ -204,6 +205,20 @@ TEST_CASE("both sides of a thin plate are apart, or counted", "[m2m][walls][cons
   CHECK(result_of(c).tally.count(Status::outside) == 0);  // each side takes from the other
   c.options.tolerance = 0;
   CHECK(result_of(c).tally.count(Status::outside) == c.to.n_points());
+}
+
+TEST_CASE("triangles overlap if they are turned by at most 60 degrees",
+          "[m2m][walls][conservative]") {
+  const TrianglePlane flat({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 1, 0}}});
+  for (const double degrees : {0.0, 59.0, 61.0, 89.0}) {
+    const double c = std::cos(degrees * std::numbers::pi / 180),
+                 s = std::sin(degrees * std::numbers::pi / 180);
+    const TrianglePlane turned({{{0, 0, 0}, {1, 0, 0}, {0, c, s}, {0, c, s}}});
+    TriangleCutter cutter(2);
+    cutter.add(turned, flat, 1);
+    INFO(degrees << " degrees");
+    CHECK(cutter.size() == (degrees < 60 ? 1 : 0));
+  }
 }
 
 TEST_CASE("moments of triangles are those of cones over them", "[m2m][walls][conservative]") {

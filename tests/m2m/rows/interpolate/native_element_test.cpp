@@ -151,6 +151,16 @@ TEST_CASE("where an element folds over, no inverse is taken from behind the fold
   }
 }
 
+TEST_CASE("a point is found up to the slack outside", "[m2m][native]") {
+  for (const std::size_t n : native_sizes) {
+    std::vector<Point> vertices;
+    for (std::size_t k = 0; k < n; ++k) vertices.push_back(reference_vertex(n, k));
+    CHECK(invert_element({0.1, 0.2, -0.05}, vertices, centre_of(n)));
+    CHECK_FALSE(invert_element({0.1, 0.2, -0.05}, vertices, centre_of(n), 1e-9));
+    CHECK_FALSE(invert_element({0.1, 0.2, -0.5}, vertices, centre_of(n)));
+  }
+}
+
 TEST_CASE("elements without volume have no inverse", "[m2m][native]") {
   for (const std::size_t n : native_sizes) {
     std::vector<Point> vertices(n);

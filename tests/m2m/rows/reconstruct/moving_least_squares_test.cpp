@@ -195,7 +195,15 @@ TEST_CASE("neighbours that determine less fall back", "[m2m][fits]") {
   for (Point& p : cap) p[2] = -0.05 * ((p[0] - 0.5) * (p[0] - 0.5) + (p[1] - 0.5) * (p[1] - 0.5));
   CHECK(fit_of(cap, {0.5, 0.5, 0.01}, test::smooth, value) == Fit{2, 2});
   CHECK(value == Approx(test::smooth({0.5, 0.5, 0})).margin(1e-4));
-  // Far outside weights stay small.
+  // Outside weights stay small, as the order falls.
+  for (const double x : {1.05, 1.1, 1.15, 1.2, 1.3, 1.5}) {
+    MovingLeastSquares fit(2);
+    const Point at{x, 0.5, 0.5};
+    (void)fit.compute(at, nearest(at, random_points(200, 11), 30));
+    double sum = 0;
+    for (const double weight : fit.weights()) sum += std::abs(weight);
+    CHECK(sum <= 10);
+  }
   (void)fit_of(
       random_points(200, 10), {30, 0.5, 0.5}, [](const Point& p) { return p[0]; }, value);
   CHECK(value > 0);
