@@ -6,12 +6,12 @@
 //     that do not hold this vertex (Dompierre, Labbé, Vallet and Camarero 1999, "How to subdivide
 //     pyramids, prisms and hexahedra into tetrahedra").
 //
-// A hexahedron gives six tetrahedra, one of 27 vertices eight times as many, a wedge three, a pyramid two. Elements with repeated vertices
-// (a wedge written as a hexahedron) give fewer. A ten-node tetrahedron gives eight: four at its
-// corners, and four of the octahedron between them (Bey 1995). Kind native evaluates the
-// elements themselves (native_element.hpp). Meshes of surfaces and lines have triangles (six-node ones are split into four),
-// quadrilaterals, cut as above, and edges: the "tetrahedra" of this file are cells then, as
-// TetMesh::dimension says.
+// A hexahedron gives six tetrahedra, one of 27 vertices eight times as many, a wedge three, a pyramid
+// two. Elements with repeated vertices (a wedge written as a hexahedron) give fewer. A ten-node
+// tetrahedron gives eight: four at its corners, and four of the octahedron between them (Bey 1995).
+// Kind native evaluates the elements themselves (native_element.hpp). Meshes of surfaces and lines
+// have triangles (six-node ones are split into four), quadrilaterals, cut as above, and edges: the
+// "tetrahedra" of this file are cells then, as TetMesh::dimension says.
 #pragma once
 
 #include "m2m/mesh.hpp"

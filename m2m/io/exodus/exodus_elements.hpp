@@ -35,9 +35,9 @@ namespace tess::m2m {
   return 3;
 }
 
-/// The element of this name and number of vertices, if it is supported: TET4, TET10, HEX8, HEX27, WEDGE6,
-/// PYRAMID5, TRI3, TRI6, QUAD4, SHELL3, SHELL4, BAR2 and other lines of two vertices, also without
-/// the number. `type`: in upper case.
+/// The element of this name and number of vertices, if it is supported: TET4, TET10, HEX8, HEX27,
+/// WEDGE6, PYRAMID5, TRI3, TRI6, QUAD4, SHELL3, SHELL4, BAR2 and other lines of two vertices, also
+/// without the number. `type`: in upper case.
 [[nodiscard]] constexpr std::optional<ElementType> exodus_supported(std::string_view type,
                                                                     std::int64_t n_vertices) {
   struct Known {

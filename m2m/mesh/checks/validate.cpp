@@ -55,6 +55,7 @@ void require_elements(std::span<const std::int64_t> of_tet, std::span<const Vert
   if (!of_tet.empty() && of_tet.size() != tets.size())
     fail(ErrorCode::bad_mesh, "elements of ", of_tet.size(), " of ", tets.size(),
          " tetrahedra are given; give each its element, or none");
+  std::int64_t last = -1;  // the element of the tetrahedron before, whose vertices are checked
   for (std::size_t t = 0; t < of_tet.size(); ++t) {
     const std::int64_t at = of_tet[t];
     if (at == -1) continue;
@@ -69,6 +70,7 @@ void require_elements(std::span<const std::int64_t> of_tet, std::span<const Vert
       if (std::ranges::find(element, v) == element.end())
         fail(ErrorCode::bad_mesh, "tetrahedron ", t, " has the corner ", v,
              ", which is no vertex of its element; give the element that it was split from");
+    if (std::exchange(last, at) == at) continue;
     for (const VertexId v : element)
       if (v < 0 || static_cast<std::size_t>(v) >= n_points)
         fail(ErrorCode::bad_mesh, "the element of tetrahedron ", t, " names vertex ", v, " of ",

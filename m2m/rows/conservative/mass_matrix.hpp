@@ -51,7 +51,7 @@ class MassMatrix {
   /// y = M x at the points owned; x is given at all points.
   void multiply(std::span<const double> x, std::size_t n_components, std::span<double> y) const;
 
-  /// Of a tetrahedron 4; of a triangle the first 3 of its corners count.
+  /// A tetrahedron has 4; of a triangle's the first 3 count.
   [[nodiscard]] std::size_t n_corners() const noexcept { return n_corners_; }
   /// Calls visit(corners, e) for every tetrahedron that is covered.
   template <class Visit>

@@ -1,5 +1,6 @@
 // Rows that integrate a source field against the basis functions of a target over the overlaps of
-// their tetrahedra, or of their triangles (the supermesh): the right-hand sides of a conservative transfer,
+// their tetrahedra, or of their triangles (the supermesh): the right-hand sides of a conservative
+// transfer,
 //
 //     load_i = integral of u_source psi_i = sum over a of w_ia u_a,
 //     w_ia = sum over source tetrahedra S and target tetrahedra T of (integral over S ∩ T of phi_a psi_i) .
@@ -27,7 +28,8 @@ namespace tess::m2m {
 /// The quantum of a target unknown; `volume`: of all tetrahedra around the point, or of the cell.
 [[nodiscard]] double quantum_of(double volume);
 
-/// Target tetrahedra or triangles in boxes, and the boxes of the source's cover that are near to each box.
+/// Target tetrahedra or triangles in boxes, and the boxes of the source's cover that are near to each
+/// box.
 struct TargetTets {
   std::vector<Corners> tets;
   std::vector<std::array<std::uint32_t, 4>> unknowns;  ///< per corner; those of a cell are equal

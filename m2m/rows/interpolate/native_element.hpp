@@ -22,7 +22,7 @@ namespace tess::m2m {
 
 inline constexpr std::size_t most_native_vertices = 27;
 
-/// Of each vertex; those beyond the element's are 0.
+/// Holds the shape function of each vertex; those beyond the element's are 0.
 struct ShapeFunctions {
   std::array<double, most_native_vertices> values{};    ///< their sum is 1
   std::array<Point, most_native_vertices> gradients{};  ///< by r
@@ -37,9 +37,10 @@ struct ShapeFunctions {
 [[nodiscard]] double depth_in_element(std::size_t n_vertices, const Point& r);
 
 /// The reference coordinates of the point `p`: Newton's method from `start`. Empty if it does not
-/// converge to |error| < 1e-12 of the size of the element, if the map is not oriented on the way as it is at the
-/// centre, since it folds over, or if the result is outside by more than `slack`. Beyond the faces
-/// of the split a point may lie in a curved element, and the reverse; 0.1 covers usual curvatures.
+/// converge to |error| < 1e-12 of the size of the element, if the map is not oriented on the way as
+/// it is at the centre, since it folds over, or if the result is outside by more than `slack`.
+/// Beyond the faces of the split a point may lie in a curved element, and the reverse; 0.1 covers
+/// usual curvatures.
 [[nodiscard]] std::optional<Point> invert_element(const Point& p, std::span<const Point> vertices,
                                                   const Point& start, double slack = 0.1);
 

@@ -21,8 +21,8 @@ constexpr double above_rounding = 32;
 constexpr double most_extents = 8;
 /// One whose extent is below this part of the largest one may be left out before the order is.
 constexpr double thin = 0.1;
-/// So does one of which less than this part is independent of a quadratic polynomial of the wider ones:
-/// on a sphere, x² + y² + z² is constant, and a quadratic in three directions is not determined.
+/// So may one of which less than this part is independent of a quadratic polynomial of the wider
+/// ones: on a sphere x² + y² + z² is constant, which leaves a quadratic in three directions open.
 constexpr double least_part_of_axis = 0.2;
 /// Neighbours do not determine a term if no more than this part of it is independent of others.
 constexpr double least_part_of_term = 1e-4;
@@ -97,15 +97,21 @@ void MovingLeastSquares::set_axes(const Point& at, std::span<const Point> neighb
   }
 }
 
-bool MovingLeastSquares::fits(std::int32_t order, std::size_t n_axes) {
+void MovingLeastSquares::set_columns(std::int32_t order, std::size_t n_axes) {
   const std::size_t n = local_.size();
-  Terms::Numbers row{}, to{};
-  const std::size_t n_terms = terms_at(local_at_, order, n_axes, to);
-  columns_.resize(n_terms * n);
+  Terms::Numbers row{};
+  columns_.resize(terms_at({}, order, n_axes, row) * n);
   for (std::size_t j = 0; j < n; ++j) {
-    terms_at(local_[j], order, n_axes, row);
+    const std::size_t n_terms = terms_at(local_[j], order, n_axes, row);
     for (std::size_t t = 0; t < n_terms; ++t) columns_[t * n + j] = importance_[j] * row[t];
   }
+}
+
+bool MovingLeastSquares::fits(std::int32_t order, std::size_t n_axes) {
+  const std::size_t n = local_.size();
+  Terms::Numbers to{};
+  const std::size_t n_terms = terms_at(local_at_, order, n_axes, to);
+  set_columns(order, n_axes);
   Terms terms(q_, n, least_part_of_term);
   for (std::size_t t = 0; t < n_terms; ++t)
     if (terms.append(std::span(columns_).subspan(t * n, n)) == 0) return false;
@@ -122,19 +128,13 @@ bool MovingLeastSquares::fits(std::int32_t order, std::size_t n_axes) {
 
 bool MovingLeastSquares::follows(std::size_t axis) {
   const std::size_t n = local_.size();
+  set_columns(2, axis);
+  for (std::size_t j = 0; j < n; ++j) columns_.push_back(importance_[j] * local_[j][axis]);
   Terms terms(q_, n, 0);
-  std::vector<double> column(n);
-  Terms::Numbers row{};
-  const std::size_t n_terms = terms_at({}, 2, axis, row);
-  for (std::size_t t = 0; t < n_terms; ++t) {
-    for (std::size_t j = 0; j < n; ++j) {
-      terms_at(local_[j], 2, axis, row);
-      column[j] = importance_[j] * row[t];
-    }
-    terms.append(column);
-  }
-  for (std::size_t j = 0; j < n; ++j) column[j] = importance_[j] * local_[j][axis];
-  return terms.append(column) < least_part_of_axis;
+  double part = 0;  // of the last column, which is the axis
+  for (std::size_t at = 0; at < columns_.size(); at += n)
+    part = terms.append(std::span(columns_).subspan(at, n));
+  return part < least_part_of_axis;
 }
 
 MovingLeastSquares::Fit MovingLeastSquares::compute(const Point& at,

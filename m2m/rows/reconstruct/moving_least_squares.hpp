@@ -48,6 +48,8 @@ class MovingLeastSquares {
 
  private:
   void set_axes(const Point& at, std::span<const Point> neighbours);
+  /// Sets columns_ to the terms of the neighbours, weighted, one after the other.
+  void set_columns(std::int32_t order, std::size_t n_axes);
   /// False, unless the neighbours determine this polynomial and its weights are small.
   [[nodiscard]] bool fits(std::int32_t order, std::size_t n_axes);
   /// True if the neighbours' coordinate on an axis follows from those on the wider axes.

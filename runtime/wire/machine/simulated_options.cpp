@@ -63,16 +63,14 @@ struct Value {
     return static_cast<std::int64_t>(value);
   }
   /// "1..200".
-  [[nodiscard]] SeedRange range() const {
+  void take_range(SeedRange& seeds) const {
     const std::size_t dots = text.find("..");
     if (dots == std::string::npos)
       fail(ErrorCode::bad_argument, place, ": ", text, " is no range such as 1..200");
     const Value first{place, text.substr(0, dots)}, last{place, text.substr(dots + 2)};
-    SeedRange range;
-    range.first = static_cast<std::uint64_t>(first.whole(0, most_seed));
-    range.last =
-        static_cast<std::uint64_t>(last.whole(static_cast<std::int64_t>(range.first), most_seed));
-    return range;
+    const std::int64_t least = first.whole(0, most_seed);
+    seeds.first = static_cast<std::uint64_t>(least);
+    seeds.last = static_cast<std::uint64_t>(last.whole(least, most_seed));
   }
   [[nodiscard]] double probability() const {
     std::string_view unit;
@@ -117,13 +115,10 @@ bool take_of_run(const std::string& key, const Value& value, SimulatedOptions& o
     options.pes_per_process = static_cast<std::int32_t>(value.whole(1, 1 << 20));
   } else if (key == "seed") {
     options.seed = static_cast<std::uint64_t>(value.whole(0, most_seed));
-  } else if (key == "seeds") {
-    const std::string compare = options.seeds ? options.seeds->compare : "";
-    options.seeds = value.range();
-    options.seeds->compare = compare;
-  } else if (key == "compare") {
+  } else if (key == "seeds" || key == "compare") {
     if (!options.seeds) options.seeds.emplace();
-    options.seeds->compare = value.text;
+    if (key == "seeds") value.take_range(*options.seeds);
+    if (key == "compare") options.seeds->compare = value.text;
   } else if (key == "cost") {
     options.cost.reset();
     if (value.text != "measured") options.cost = value.time();

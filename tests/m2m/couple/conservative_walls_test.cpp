@@ -28,7 +28,7 @@ double unity(const Point& /*p*/) {
   return 1;
 }
 
-/// Of values at the points of a wall.
+/// Integrates values at the points of a wall.
 double wall_integral(const TetMesh& wall, const std::vector<double>& values) {
   long double sum = 0;
   for (const Tet& cell : wall.tets) {
