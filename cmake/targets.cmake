@@ -11,7 +11,9 @@ endif()
 
 add_library(tess_options INTERFACE)
 target_link_libraries(tess_options INTERFACE tess_interface)
-target_compile_options(tess_options INTERFACE
+# Position-independent, for shared libraries and what is built on the static ones (Python's module). -fPIC stands here for programs, too, since
+# the runtime's header is compiled once for all. No name of ours is replaced at load time, so calls within a library stay direct.
+target_compile_options(tess_options INTERFACE -fPIC -fno-semantic-interposition
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Wnon-virtual-dtor -Woverloaded-virtual
   -fno-math-errno -fno-trapping-math -ffp-contract=off)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
