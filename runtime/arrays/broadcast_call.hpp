@@ -55,6 +55,7 @@ struct NumberedCall {
   std::uint64_t n_bytes = 0;  ///< of its arguments when packed
 
   [[nodiscard]] std::int64_t priority() const { return call->priority(); }
+  [[nodiscard]] const Action& carried() const { return call->action(); }
   /// The collection has ended, so no element is called. Returns the number of lost broadcasts.
   [[nodiscard]] std::uint64_t drop(Pe& /*pe*/) const { return number == 0 ? 1 : 0; }
 

@@ -62,9 +62,23 @@ struct CollectionAction {
       return nullptr;
     }
   }
-  static inline const Action action{
-      naming::name_of<Handler>(), &run, destroy_of<Held>(), &Held::pack, &Held::unpack, Kind,
-      priority_function()};
+  static constexpr Action::CarriedBy carried_function() {
+    if constexpr (requires(const Payload& payload) { payload.carried(); }) {
+      return [](const Envelope& envelope) -> const Action& {
+        return static_cast<const Held&>(envelope).payload.payload.carried();
+      };
+    } else {
+      return nullptr;
+    }
+  }
+  static inline const Action action{naming::name_of<Handler>(),
+                                    &run,
+                                    destroy_of<Held>(),
+                                    &Held::pack,
+                                    &Held::unpack,
+                                    Kind,
+                                    priority_function(),
+                                    carried_function()};
 };
 
 /// Sends a payload to the part of a collection on a PE, where it may not be known yet. It counts as

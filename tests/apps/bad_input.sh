@@ -54,7 +54,7 @@ refuses "--voxel: -1 is not a number above 0" "${transfer[@]}" kuhn:2 kuhn:2 --v
 refuses "^m2m_transfer: error: --voxel 1e-12 .* at least" "${transfer[@]}" kuhn:2 kuhn:2 --pes 2 --voxel 1e-12
 refuses --sim "${transfer[@]}" kuhn:2 kuhn:2 --sim pes=none
 refuses --pes "$bin/hello" --pes 0
-refuses "--sim seeds=1..9: this program has no search for races; link it with Tessera::testing" "$bin/hello" --sim seeds=1..9
+refuses "--sim seeds=1..9: this program has no search for races; link it with Tessera::testing" "$bin/tutorial_01_hello" --sim seeds=1..9
 for wrong in "seeds=5..2" "seeds=5" "compare=x" "seeds=1..3,seed=2" "seeds=1..3,compare=never-printed"; do
   refuses "--sim [a-z]*: .*" "$bin/ring" --sim "$wrong"
 done

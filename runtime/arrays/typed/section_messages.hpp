@@ -25,6 +25,7 @@ struct SectionStart {
   SectionId section;
   SectionCall call;
   [[nodiscard]] std::int64_t priority() const { return call.numbered.priority(); }
+  [[nodiscard]] const Action& carried() const { return call.numbered.carried(); }
   template <class Ar>
   void serialize(Ar& ar) {
     ar(section, call);

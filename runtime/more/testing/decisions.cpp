@@ -23,12 +23,15 @@ using tess::detail::Traffic;
 struct Label {
   const Action& action;
   PeId source, target;
+  const Action* carried = nullptr;  ///< the user's call in a broadcast
 };
 
 Label label_of(const Sending& sending) {
   if (sending.link != nullptr) {
     const auto& envelope = static_cast<const Envelope&>(*sending.link);
-    return {*envelope.action, envelope.source, envelope.target};
+    const Action& action = *envelope.action;
+    return {action, envelope.source, envelope.target,
+            action.carried_by == nullptr ? nullptr : &action.carried_by(envelope)};
   }
   PackedHeader header;  // where messages are intercepted, each has a buffer of its own
   std::memcpy(&header, sending.bytes.subspan(sizeof(PackedFrom)).data(), sizeof header);
@@ -76,9 +79,11 @@ Time Decisions::delay(const Sending& sending) {
                         slowness_[static_cast<std::size_t>(label.action.traffic)]));
   }
   if (options_.in_words)
-    events_.push_back({late.count() != 0, label.action.traffic != Traffic::user,
-                       plain_name(label.action.name()), label.source, label.target, sending.due,
-                       sending.due + late});
+    events_.push_back({late.count() != 0,
+                       label.carried == nullptr && label.action.traffic != Traffic::user,
+                       label.carried == nullptr ? plain_name(label.action.name())
+                                                : "broadcast " + plain_name(label.carried->name()),
+                       label.source, label.target, sending.due, sending.due + late});
   return late;
 }
 
@@ -132,9 +137,11 @@ std::string Decisions::delay_in_words(const Event& delayed) const {
   // Messages of the user are the likelier cause.
   if (std::any_of(earlier.begin(), earlier.end(), [](const Event* one) { return !one->system; }))
     std::erase_if(earlier, [](const Event* one) { return one->system; });
-  std::string words = text(delayed.system ? "the runtime's message " : "the message ", delayed.what,
-                           " from ", delayed.from, " to ", delayed.to, " was delayed by ",
-                           seconds(delayed.arrives - delayed.due) * 1e6, " us");
+  std::string words = text(delayed.system                           ? "the runtime's message "
+                           : delayed.what.starts_with("broadcast ") ? "the "
+                                                                    : "the message ",
+                           delayed.what, " from ", delayed.from, " to ", delayed.to,
+                           " was delayed by ", seconds(delayed.arrives - delayed.due) * 1e6, " us");
   if (earlier.empty()) return words;
   words += text(" behind ", earlier.front()->what, " from ", earlier.front()->from);
   if (earlier.size() > 1)

@@ -48,16 +48,18 @@ struct Action : Registered {
   using Pack = void (*)(Envelope&, Writer&);
   using Unpack = Envelope* (*)(Pe&, Reader&);
   using PriorityOf = std::int64_t (*)(const Envelope&);
+  using CarriedBy = const Action& (*)(const Envelope&);
 
   Action(naming::Name name, Run run_, Destroy destroy_, Pack pack_, Unpack unpack_,
-         Traffic traffic_, PriorityOf priority_of_ = nullptr)
+         Traffic traffic_, PriorityOf priority_of_ = nullptr, CarriedBy carried_by_ = nullptr)
       : Registered(name),
         run(run_),
         destroy(destroy_),
         pack(pack_),
         unpack(unpack_),
         traffic(traffic_),
-        priority_of(priority_of_) {}
+        priority_of(priority_of_),
+        carried_by(carried_by_) {}
 
   /// The duration of its messages as known in this process: a message that may be slow must not
   /// delay earlier messages to other PEs.
@@ -76,6 +78,7 @@ struct Action : Registered {
   Unpack unpack;
   Traffic traffic;
   PriorityOf priority_of;  ///< null if none of its messages is prioritised
+  CarriedBy carried_by;    ///< the user's call in it, for reports; null if there is none
 
  private:
   mutable std::atomic<Pace> pace_{Pace::unknown};
