@@ -30,6 +30,14 @@ kept = sorted((root / "apps/bench/results").iterdir())
 assert kept, "no result is kept"
 n_rows = sum(len(rows_of(path)) for path in kept)
 
+# The figures of the first page are kept ones.
+found = {(row["name"], row["system"], float(row["median"]), row["date"]) for path in kept for row in rows_of(path)}
+page = re.findall(r"^\|[^|]*\| ([\d.]+) ns \| ([\d.]+) ns, (\S+) \| `(\w+)`,(?: `(\w+)`,)? .*, (\S+) \|$",
+                  (root / "README.md").read_text(), re.M)
+assert len(page) == 3, page
+for ours, other, system, name, name_of_other, date in page:
+    assert (name, "Tessera", float(ours), date) in found and (name_of_other or name, system, float(other), date) in found, (name, ours, other)
+
 # keep.sh writes such a file, with the rows of one PE, two PEs and two processes.
 with tempfile.TemporaryDirectory() as into:
     subprocess.run(["bash", root / "apps/bench/keep.sh", "--built", built, "--into", into, "--quick", "message"],
