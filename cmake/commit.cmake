@@ -1,11 +1,23 @@
-# Writes build.hpp of apps/kit: the version, the preset and the commit that are built. Run at each build; the file
-# changes only when they do.
-execute_process(COMMAND git -C "${SOURCE}" describe --always --dirty --exclude=*
-  OUTPUT_VARIABLE commit OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
-if(NOT commit)
-  set(commit "unknown")
+# Writes the source that says what is built: the version, the preset and the commit. Run at each build; the file changes only when
+# they do. An archive that git made of the sources names its commit here; a folder without git has none.
+set(commit "$Format:%h$")
+if(commit MATCHES "Format")
+  set(commit "")
+  if(EXISTS "${SOURCE}/.git")
+    execute_process(COMMAND git -C "${SOURCE}" describe --always --dirty --exclude=*
+      OUTPUT_VARIABLE commit OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+  endif()
+  if(NOT commit)
+    set(commit "unknown")
+  endif()
 endif()
-set(text "#pragma once\n\nnamespace kit {\ninline constexpr const char* version_of_build = \"${VERSION}\";\ninline constexpr const char* preset_of_build = \"${PRESET}\";\ninline constexpr const char* commit_of_build = \"${commit}\";\n}  // namespace kit\n")
+set(text "namespace tess::detail {\n")
+foreach(fact IN ITEMS "version_of_build;${VERSION}" "preset_of_build;${PRESET}" "commit_of_build;${commit}")
+  list(GET fact 0 name)
+  list(GET fact 1 value)
+  string(APPEND text "extern const char* const ${name};\nconst char* const ${name} = \"${value}\";\n")
+endforeach()
+string(APPEND text "}  // namespace tess::detail\n")
 if(EXISTS "${OUT}")
   file(READ "${OUT}" before)
 endif()

@@ -62,14 +62,21 @@ endfunction()
 
 # tess_library(NAME SOURCES … HEADERS … DEPENDS … USES … USES_TO_BUILD …): headers are listed so that a test compiles
 # each alone (not those of programs) and that they are installed. DEPENDS stand in the headers, USES in the sources only, and USES_TO_BUILD have
-# no library that a program would link. A library of a component (TESS_COMPONENT) is installed if TESS_INSTALL is set.
-# Sanitizer builds make the libraries that a test needs.
+# no library that a program would link. A library of a component (TESS_COMPONENT) is installed if TESS_INSTALL is set, and shared if
+# BUILD_SHARED_LIBS is; those of programs are static. Sanitizer builds make the libraries that a test needs.
 function(tess_library name)
   cmake_parse_arguments(ARG "" "" "SOURCES;HEADERS;DEPENDS;USES;USES_TO_BUILD" ${ARGN})
   list(TRANSFORM ARG_HEADERS PREPEND "${CMAKE_CURRENT_SOURCE_DIR}/")
   if(ARG_SOURCES)
     set(scope PUBLIC)
-    add_library(${name} STATIC ${ARG_SOURCES})
+    set(kind STATIC)
+    if(BUILD_SHARED_LIBS AND TESS_COMPONENT)
+      set(kind SHARED)
+    endif()
+    add_library(${name} ${kind} ${ARG_SOURCES})
+    # Compiled alike in both kinds.
+    set_target_properties(${name} PROPERTIES DEFINE_SYMBOL "" POSITION_INDEPENDENT_CODE OFF
+      VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
     target_link_libraries(${name} PUBLIC tess_interface ${ARG_DEPENDS}
       PRIVATE ${ARG_USES} $<BUILD_INTERFACE:tess_options> $<BUILD_INTERFACE:${ARG_USES_TO_BUILD}>)
     tess_reuse_runtime_header(${name} ${ARG_DEPENDS})
@@ -84,7 +91,8 @@ function(tess_library name)
   list(TRANSFORM ARG_HEADERS REPLACE "/[^/]+/\\.\\./" "/")
   target_sources(${name} ${scope} FILE_SET HEADERS BASE_DIRS "${PROJECT_SOURCE_DIR}" FILES ${ARG_HEADERS})
   if(TESS_COMPONENT AND TESS_INSTALL)
-    install(TARGETS ${name} EXPORT Tessera_${TESS_COMPONENT} FILE_SET HEADERS DESTINATION include/tessera)
+    install(TARGETS ${name} EXPORT Tessera_${TESS_COMPONENT} ARCHIVE COMPONENT dev LIBRARY COMPONENT bin NAMELINK_COMPONENT dev
+      FILE_SET HEADERS DESTINATION include/tessera COMPONENT dev)
   endif()
   list(FILTER ARG_SOURCES EXCLUDE REGEX "^/")  # generated
   list(TRANSFORM ARG_SOURCES PREPEND "${CMAKE_CURRENT_SOURCE_DIR}/")
@@ -93,10 +101,11 @@ function(tess_library name)
   set_property(GLOBAL APPEND PROPERTY TESS_LIBRARIES ${name} ${ARG_USES} ${ARG_USES_TO_BUILD})
 endfunction()
 
-# tess_component(LIBRARY): Tessera::<component> is this library and all that it stands on.
-function(tess_component library)
-  add_library(Tessera::${TESS_COMPONENT} ALIAS ${library})
-  set_target_properties(${library} PROPERTIES EXPORT_NAME ${TESS_COMPONENT})
+# tess_export(NAME LIBRARY): Tessera::NAME is this library and all that it stands on; for pkg-config it is tessera-NAME.
+function(tess_export name library)
+  add_library(Tessera::${name} ALIAS ${library})
+  set_target_properties(${library} PROPERTIES EXPORT_NAME ${name})
+  set_property(GLOBAL APPEND PROPERTY TESS_EXPORTED ${name})
 endfunction()
 
 # tess_program(NAME SOURCES … DEPENDS …): a program in bin/.
@@ -107,11 +116,14 @@ function(tess_program name)
   tess_reuse_runtime_header(${name} ${ARG_DEPENDS})
 endfunction()
 
-# tess_app(NAME SOURCES … DEPENDS …): the same for programs of users, which sanitizer builds leave out.
+# tess_app(NAME SOURCES … DEPENDS …): the same for programs of users, which are installed, but for those of the tutorial, and
+# which sanitizer builds leave out.
 function(tess_app name)
   tess_program(${name} ${ARGN})
   if(TESS_SANITIZE)
     set_target_properties(${name} PROPERTIES EXCLUDE_FROM_ALL ON)
+  elseif(TESS_INSTALL AND NOT name MATCHES "^tutorial_")
+    install(TARGETS ${name} RUNTIME DESTINATION bin COMPONENT bin)
   endif()
 endfunction()
 

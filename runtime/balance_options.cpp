@@ -2,6 +2,7 @@
 
 #include "runtime/balance/prediction.hpp"
 #include "runtime/balance/strategy.hpp"
+#include "runtime/core/did_you_mean.hpp"
 #include "runtime/core/error.hpp"
 #include "runtime/core/number.hpp"
 
@@ -43,7 +44,8 @@ BalanceWhen parse_when(std::string_view value) {
   if (value == "periodic") return BalanceWhen::periodic;
   if (value == "automatic") return BalanceWhen::automatic;
   fail(ErrorCode::bad_argument, "--balance when: ", value,
-       " is not one of at_sync, periodic, automatic");
+       " is not one of at_sync, periodic, automatic",
+       did_you_mean(value, "at_sync periodic automatic"));
 }
 
 }  // namespace
@@ -82,8 +84,9 @@ BalanceOptions parse_balance(std::string_view given) {
     } else if (is_strategy) {
       options.strategy = key;
     } else {
-      fail(ErrorCode::bad_argument, "--balance: unknown key ", key == "report" ? part : key,
-           " (strategy, when, period, prediction, window, seed, report)");
+      constexpr std::string_view names = "strategy, when, period, prediction, window, seed, report";
+      fail(ErrorCode::bad_argument, "--balance: unknown key ", key == "report" ? part : key, " (",
+           names, ")", did_you_mean(key == "report" ? "" : key, names));
     }
   }
   if (keys.contains("period") && options.when != BalanceWhen::periodic)

@@ -3,6 +3,7 @@
 #include "runtime/base/option_state.hpp"
 #include "runtime/base/option_words.hpp"
 #include "runtime/core/check.hpp"
+#include "runtime/version.hpp"
 #include "runtime/wire/machine/mpi.hpp"
 
 #include <algorithm>
@@ -57,7 +58,9 @@ bool Option::is_given() const {
 }
 
 CommandLine::CommandLine(std::string description) : description_(std::move(description)) {
-  flag("-h,--help", asks_for_help_, "print this text");
+  flag("-h,--help", asks_, "print this text");
+  flag("--version", asks_, "print the version, the commit, the compiler and MPI");
+  flag("--help-runtime", asks_, "print the runtime's options: --pes, --sim, --stats and others");
 }
 
 CommandLine::~CommandLine() = default;
@@ -88,10 +91,12 @@ Option CommandLine::add(const std::string& name, void* variable, const OptionAcc
   return Option(option);
 }
 
-bool CommandLine::parse(int argc, char** argv, const std::string& footer) {
+bool CommandLine::parse(int argc, char** argv, const std::string& runtime_help) {
   const std::string_view path = argv[0];
   program_ = path.substr(path.rfind('/') + 1);
-  footer_ = footer;
+  runtime_help_ = runtime_help;
+  if (runtime_help.empty())
+    std::erase_if(options_, [](const auto& o) { return o->names.front() == "--help-runtime"; });
   for (const auto& option : options_) {
     option->is_given = false;
     option->values.clear();
@@ -104,10 +109,14 @@ bool CommandLine::parse(int argc, char** argv, const std::string& footer) {
       take_argument(word);
     } else if (word == "--") {
       options_ended = true;
-    } else if (OptionState& option = known(name_in(word)); &option != options_.front().get()) {
+    } else if (OptionState& option = known(name_in(word)); option.variable != &asks_) {
       i += take_option(option, word, std::span(words).subspan(i));
     } else {
-      if (detail::speaks_for_job()) print(help());
+      const std::string& name = option.names.back();
+      if (detail::speaks_for_job())
+        print(name == "--help"      ? help()
+              : name == "--version" ? version_text(program_)
+                                    : runtime_help_);
       return false;
     }
   }
@@ -168,7 +177,9 @@ std::string CommandLine::help() const {
       if (option->heading == heading) lines += option->help();
     if (!lines.empty()) out += text("\n", heading, ":\n", lines);
   }
-  return text(out, "\n", footer_, footer_.empty() ? "" : "\n");
+  if (!examples_.empty()) out += "\nExamples:\n";
+  for (const char* const example : examples_) out += text("  ", program_, " ", example, "\n");
+  return out + footer_;
 }
 
 detail::OptionState* CommandLine::find(std::string_view name) const {
@@ -179,7 +190,7 @@ detail::OptionState* CommandLine::find(std::string_view name) const {
 
 detail::OptionState& CommandLine::known(const std::string& name) const {
   if (OptionState* const option = find(name)) return *option;
-  detail::refuse_unknown_option(name, help());  // with the options of the footer
+  detail::refuse_unknown_option(name, help() + runtime_help_);  // with options of the footer
 }
 
 bool CommandLine::is_given(const std::string& name) const {

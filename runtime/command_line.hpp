@@ -11,8 +11,9 @@
 //     }
 //
 // parse() throws tess::Error for what is wrong, which guarded() prints in one line. --help lists
-// the program's options, and the runtime's below them. A user writes "--steps 5" or "--steps=5";
-// after "--" no word is an option. The CMake target is Tessera::command_line.
+// the program's options, --help-runtime the runtime's; --version says which build it is. A user
+// writes "--steps 5" or "--steps=5"; after "--" no word is an option. The CMake target is
+// Tessera::command_line.
 #pragma once
 
 #include "runtime/run.hpp"
@@ -76,11 +77,16 @@ class CommandLine {
   Option option(const std::string& name, T& value, const std::string& meaning);
   Option flag(const std::string& name, bool& value, const std::string& meaning);
 
-  /// False if it printed the help, `footer` below it: the program is done. Throws tess::Error for
-  /// bad options.
-  [[nodiscard]] bool parse(int argc, char** argv, const std::string& footer = options_help());
+  /// More text for the help, below the options.
+  void footer(const std::string& text) { footer_ += "\n" + text; }
+  /// Commands for the help that show what the program does: the words after its name.
+  void examples(std::initializer_list<const char*> commands) { examples_ = commands; }
 
-  /// The text of --help; with the footer once the line is parsed.
+  /// False if it printed the help or the version: the program is done. Throws tess::Error for bad
+  /// options. `runtime_help` is empty for a program that takes no options of the runtime.
+  [[nodiscard]] bool parse(int argc, char** argv, const std::string& runtime_help = options_help());
+
+  /// The text of --help.
   [[nodiscard]] std::string help() const;
 
   /// It is known once the line is parsed; false for a name that is no option.
@@ -105,9 +111,10 @@ class CommandLine {
   std::size_t take_option(detail::OptionState& option, const std::string& word,
                           std::span<const std::string> next) const;
 
-  std::string description_, program_, footer_;
+  std::string description_, program_, footer_, runtime_help_;
+  std::vector<const char*> examples_;
   std::string group_ = "Options";
-  bool asks_for_help_ = false;
+  bool asks_ = false;
   std::vector<std::unique_ptr<detail::OptionState>> options_;
 };
 

@@ -8,6 +8,7 @@
 #include "runtime/pe/interfaces/seed_search.hpp"
 #include "runtime/pe/pe.hpp"
 #include "runtime/pe/runtime.hpp"
+#include "runtime/version.hpp"
 #include "runtime/watch/service/service.hpp"
 #include "runtime/wire/machine/mpi.hpp"
 #include "runtime/wire/machine/simulated.hpp"
@@ -94,10 +95,13 @@ std::chrono::nanoseconds number_of_seconds(std::string_view option, std::string_
   return std::chrono::nanoseconds(static_cast<std::int64_t>(*number * 1e9));
 }
 
+const char* name_of_program(const char* path) {
+  const char* const slash = std::strrchr(path, '/');
+  return slash != nullptr ? slash + 1 : path;
+}
+
 void print_error(const char* program, const Error& error) {
-  const char* slash = std::strrchr(program, '/');
-  std::fprintf(stderr, "%s: error: %s\n", slash != nullptr ? slash + 1 : program,
-               one_line(error.what()).c_str());
+  std::fprintf(stderr, "%s: error: %s\n", name_of_program(program), one_line(error.what()).c_str());
   std::fflush(stderr);
 }
 
@@ -134,16 +138,19 @@ struct Unread {
 };
 Unread unread;
 
-/// True if a word that no parser has read asks for the help, which is then printed. Throws for any
-/// other option: it would be ignored.
+/// True if a word that no parser has read asks for the help or the version, which is then printed.
+/// Throws for any other option: it would be ignored.
 bool asks_for_help() {
   if (unread.argc == nullptr) return false;
   for (int i = 1; i < *unread.argc; ++i) {
     const std::string_view word = unread.argv[i];
     if (!detail::looks_like_option(word)) continue;
-    if (word != "--help" && word != "-h")
+    const bool asks_for_version = word == "--version";
+    if (!asks_for_version && word != "--help" && word != "-h" && word != "--help-runtime")
       detail::refuse_unknown_option(detail::name_in(word), options_help());
-    if (speaks_for_job()) print("usage: ", unread.argv[0], " [options]\n", options_help());
+    if (speaks_for_job())
+      print(asks_for_version ? version_text(name_of_program(unread.argv[0]))
+                             : text("usage: ", unread.argv[0], " [options]\n", options_help()));
     return true;
   }
   return false;
@@ -265,7 +272,8 @@ std::string options_help() {
       "  --stats     print the counters of each PE: messages, bytes, busy and idle seconds, "
       "chares\n"
       "  --trace F   write what each PE ran, and which send caused it, as JSON for Perfetto or\n"
-      "              chrome://tracing (process p of several writes F.p)\n";
+      "              chrome://tracing (process p of several writes F.p)\n"
+      "  --version   print the version, the commit, the compiler and MPI\n";
   if (detail::make_monitor != nullptr)
     text +=
         "  --monitor [ADDRESS:]PORT\n"

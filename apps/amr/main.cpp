@@ -114,6 +114,9 @@ int start(tess::Setup& setup, int argc, char** argv) {
   driver.stability("cases at the edge, each against what must hold");
   driver.flag("--uncorrected", options.uncorrected,
               "coarse cells keep their own flows beside finer ones: the mass changes, exit code 1");
+  driver.examples({"--max-level 4 --steps 8 --pes 2",
+                   "--max-level 4 --steps 8 --balance greedy_refine --sim pes=8,cost=100ns",
+                   "--max-level 4 --steps 4 --study"});
   if (!driver.parse(argc, argv)) return 0;
   driver.refuse_both("--steps", "--time");
   settings.checkpoints.check(driver.line(), {"--max-level", "--least-level", "--cells", "--order",

@@ -2,10 +2,10 @@
 
 #include "apps/kit/median.hpp"
 #include "apps/kit/rows.hpp"
-#include "apps/kit/version.hpp"
 #include "runtime/here.hpp"
 #include "runtime/pe/pe.hpp"
 #include "runtime/run.hpp"
+#include "runtime/version.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -31,7 +31,7 @@ std::string csv_line(R row) {
   return fmt::format("{},{},{},{},{:.2f},{},{},{},\"{}\",{},{}\n", row.name,
                      shown(row.samples.median()), row.unit, shown(row.samples.least()),
                      row.samples.spread(), limit, row.origin.pes, row.origin.ranks,
-                     row.origin.machine, kit::build_preset(), kit::build_commit());
+                     row.origin.machine, tess::build().preset, tess::build().commit);
 }
 
 constexpr kit::Column<Row> columns[] = {
@@ -45,7 +45,7 @@ constexpr kit::Column<Row> columns[] = {
     {"pes", "", nullptr, [](R r) -> Json { return r.origin.pes; }},
     {"ranks", "", nullptr, [](R r) -> Json { return r.origin.ranks; }},
     {"machine", "", nullptr, [](R r) -> Json { return r.origin.machine; }},
-    {"preset", "", nullptr, [](R) -> Json { return kit::build_preset(); }}};
+    {"preset", "", nullptr, [](R) -> Json { return tess::build().preset; }}};
 
 }  // namespace
 

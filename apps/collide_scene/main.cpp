@@ -243,7 +243,10 @@ int start(tess::Setup& setup, int argc, char** argv, bool on_chares) {
       .takes(6, 6);
   driver.option("--network KEYS", ladder.network, "what else --sim would say of these machines");
   driver.stability("extreme scenes against brute force");
-  if (!driver.parse(argc, argv, scenes_help() + tess::options_help())) return 0;
+  driver.footer(scenes_help());
+  driver.examples({"planes:4096 --triangles --pes 2", "crowd:4096 --steps 5 --pes 2 --explain",
+                   "planes:4096 --study voxels --out planes"});
+  if (!driver.parse(argc, argv)) return 0;
   if (self) options.rules.within_model = tess::collide::WithinModel::test;
   driver.refuse_both("--repeat", "--slack");
   if (on_chares && (options.serial || driver.mode() != Mode::run))

@@ -4,6 +4,7 @@
 //
 //     mpirun -n 2 embedded --pes 2
 #include "runtime/runtime.hpp"
+#include "runtime/version.hpp"
 
 #include <mpi.h>
 
@@ -90,15 +91,17 @@ int level_of(std::string_view word) {
   return word == "funneled" ? MPI_THREAD_FUNNELED : -1;
 }
 
-bool is_help(std::string_view option) {
-  return option == "--help" || option == "-h";
+bool is_question(std::string_view option) {
+  return option == "--help" || option == "-h" || option == "--version";
 }
 
 }  // namespace
 
 /// `--level single` and `--level funneled` show what a run says of a level that is too low.
 int main(int argc, char** argv) {
-  const bool asks_for_help = std::any_of(argv + 1, argv + argc, is_help);
+  char** const question = std::find_if(argv + 1, argv + argc, is_question);
+  const bool is_asked = question != argv + argc;
+  const bool asks_for_version = is_asked && std::string_view(*question) == "--version";
   int level = MPI_THREAD_SERIALIZED;
   std::string word;
   char** const end = argv + argc;
@@ -117,9 +120,11 @@ int main(int argc, char** argv) {
   MPI_Comm_rank(MPI_COMM_WORLD, &ring.rank);
   MPI_Comm_size(MPI_COMM_WORLD, &ring.n);
   int code = 0;
-  if (asks_for_help) {
+  if (is_asked) {
     if (ring.rank == 0)
-      tess::print("usage: embedded [--level single|funneled] [options]\n", tess::options_help());
+      tess::print(asks_for_version ? tess::version_text("embedded")
+                                   : "usage: embedded [--level single|funneled] [options]\n" +
+                                         tess::options_help());
   } else if (level < 0) {
     if (ring.rank == 0)
       std::fprintf(stderr, "embedded: error: --level '%s': give single or funneled\n",

@@ -2,8 +2,8 @@
 
 #include "apps/kit/output/chart.hpp"
 #include "apps/kit/output/write_file.hpp"
-#include "apps/kit/version.hpp"
 #include "runtime/core/error.hpp"
+#include "runtime/version.hpp"
 #include "runtime/wire/machine/machine.hpp"
 
 #include <cstdio>
@@ -13,8 +13,10 @@ namespace kit {
 
 Json document(const std::string& program, const std::string& machine, const Json& options,
               const Json& results, const Json& more) {
-  Json out{{"program", program}, {"version", version()}, {"commit", build_commit()},
-           {"machine", machine}, {"options", options},   {"results", results}};
+  const tess::Build& build = tess::build();
+  Json out{{"program", program},         {"version", build.version}, {"commit", build.commit},
+           {"compiler", build.compiler}, {"mpi", build.mpi},         {"machine", machine},
+           {"options", options},         {"results", results}};
   out.update(more);
   return out;
 }
@@ -69,17 +71,12 @@ void Driver::picture(const std::string& meaning) {
   option("--plot FILE", picture_, meaning + ": FILE.svg");
 }
 
-bool Driver::parse(int argc, char** argv, const std::string& footer) {
+bool Driver::parse(int argc, char** argv) {
   const std::string_view path = argv[0];
   program_ = path.substr(path.rfind('/') + 1);
   line_.option("--progress WHEN", shows_progress_, "a line that reports progress: auto, off")
       .one_of({"auto", "off"});
-  line_.flag("--version", asks_for_version_, "print the version");
-  if (!line_.parse(argc, argv, footer)) return false;
-  if (asks_for_version_) {
-    if (speaks_) tess::print_text(version_text(program_));
-    return false;
-  }
+  if (!line_.parse(argc, argv)) return false;
   mode_ = Mode::run;
   std::string reason;
   for (const ModeOption& one : mode_options_) {

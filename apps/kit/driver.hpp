@@ -14,8 +14,8 @@
 //
 // The file of --json, in all programs and modes:
 //
-//     {"program": "heat", "version": "0.1.0", "commit": "4f1c2e0", "machine": "…",
-//      "options": {"steps": "10", …}, "results": [{…}, …]}
+//     {"program": "heat", "version": "0.2.0", "commit": "4f1c2e0", "compiler": "g++ 12.2.0",
+//      "mpi": "Open MPI 4.1.4", "machine": "…", "options": {"steps": "10", …}, "results": [{…}, …]}
 //
 // `results` has an object per run, case or row of a study. Members that only one program has follow.
 #pragma once
@@ -51,6 +51,9 @@ class Driver {
  public:
   Driver(tess::Setup& setup, const std::string& description);
 
+  /// As of tess::CommandLine.
+  void footer(const std::string& text) { line_.footer(text); }
+  void examples(std::initializer_list<const char*> commands) { line_.examples(commands); }
   /// The options that follow stand below this heading in the help.
   void group(const std::string& heading) { line_.group(heading); }
   /// The options that follow mean something in these modes only, and are refused in others.
@@ -80,7 +83,7 @@ class Driver {
 
   /// False if it printed the help or the version: the program is done. Throws tess::Error for bad
   /// options, for two that do not work together, and for files that cannot be written.
-  [[nodiscard]] bool parse(int argc, char** argv, const std::string& footer = tess::options_help());
+  [[nodiscard]] bool parse(int argc, char** argv);
 
   [[nodiscard]] Modes mode() const { return mode_; }
   /// Changes to a mode that follows from the values of options; `reason` is what was given for it.
@@ -121,8 +124,7 @@ class Driver {
 
   tess::CommandLine line_;
   std::string machine_, trace_, program_;
-  bool speaks_, explains_ = false, asks_for_version_ = false, is_study_ = false,
-                is_stability_ = false;
+  bool speaks_, explains_ = false, is_study_ = false, is_stability_ = false;
   std::string json_, picture_, shows_progress_ = "auto";
   Modes modes_ = Mode::all, mode_ = Mode::run;
   std::vector<Known> known_;

@@ -83,6 +83,9 @@ int start(tess::Setup& setup, int argc, char** argv) {
   kit::Driver driver(setup, "Experiments with overdecomposition and load balancing.");
   driver.flag("--list", list, "list workloads and strategies");
   add_options(driver, settings);
+  driver.examples(
+      {"--list", "--workload linear --per-pe 4 --strategy none,greedy --iterations 20 --pes 2",
+       "--workload moving_hot_spot --strategy all --sim pes=8,latency=2us --iterations 20"});
   if (!driver.parse(argc, argv)) return 0;
   if (list) {
     if (driver.speaks()) tess::print_text(list_text());

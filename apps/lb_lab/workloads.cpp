@@ -1,4 +1,5 @@
 #include "apps/lb_lab/workload/workload.hpp"
+#include "runtime/core/did_you_mean.hpp"
 #include "runtime/core/error.hpp"
 #include "runtime/core/hash.hpp"
 
@@ -161,7 +162,7 @@ std::uint32_t find_workload(std::string_view name) {
     names += (i > 0 ? ", " : "") + workloads()[i].name;
   }
   tess::fail(tess::ErrorCode::bad_argument, "--workload: there is no ", name, "; choose of all, ",
-             names);
+             names, tess::did_you_mean(name, names));
 }
 
 double block_seconds(const Problem& p, const Block& block, std::int32_t t) {

@@ -131,6 +131,10 @@ int run(tess::Setup& setup, int argc, char** argv) {
   driver.study("energy drift against time step: five of them");
   driver.picture("draw the study");
   driver.stability("stiff and extreme cases");
+  driver.examples({"--atoms 500 --density 0.4 --cells 2,2,2 --steps 20 --check --pes 2",
+                   "--atoms 500 --density 0.4 --cells 2,2,2 --steps 20 --balance greedy_refine "
+                   "--sim pes=4,cost=500ns",
+                   "--atoms 500 --density 0.4 --cells 2,2,2 --steps 20 --reverse"});
   if (!driver.parse(argc, argv)) return 0;
   driver.refuse_both("--explain", "--restart");  // which takes the checkpoint's options
   s.options.checkpoints.check(driver.line(),

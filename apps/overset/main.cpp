@@ -197,6 +197,8 @@ int run(tess::Setup& setup, int argc, char** argv) {
               "0.6:0.8:0=2 for 0.6 x + 0.8 y = 2")
       .separated_by(',');
   driver.explain("print what this run does, step by step");
+  driver.examples({"kuhn:16 ball:8 --plot pictures", "kuhn:16 star:8 --layers 2 --pes 2 --explain",
+                   "kuhn:8,16 box --study h"});
   if (!driver.parse(argc, argv)) return 0;
   if (!options.study.empty()) read_study(options, driver);
   check_files(options, driver);

@@ -107,6 +107,8 @@ int run(tess::Setup& setup, int argc, char** argv) {
       .separated_by(',')
       .between(4, 1024);
   driver.stability("stiff and extreme cases of every rule; without a SCENE");
+  driver.examples({"--help-scene", "bouncy.json --steps 20 --pes 2 --out bouncy",
+                   "bouncy.json --study --resolutions 8,16"});
   if (!driver.parse(argc, argv)) return 0;
   if (help_scene) {
     tess::print(scene_help());

@@ -75,9 +75,7 @@ const std::string& name_of(Type type) {
 Type parse_type(std::string_view name) {
   const auto& names = type_names();
   const auto at = std::ranges::find(names, name);
-  if (at == names.end())
-    tess::fail(tess::ErrorCode::bad_argument, fmt::format("-type: there is no {}; choose one of {}",
-                                                          name, fmt::join(names, ", ")));
+  if (at == names.end()) refuse_name("-type", name, names);
   return static_cast<Type>(at - names.begin());
 }
 

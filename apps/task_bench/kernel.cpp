@@ -1,5 +1,6 @@
 #include "apps/task_bench/kernel.hpp"
 
+#include "runtime/core/did_you_mean.hpp"
 #include "runtime/core/error.hpp"
 #include "runtime/core/hash.hpp"
 
@@ -60,13 +61,17 @@ const std::string& name_of(KernelType type) {
   return kernel_names()[static_cast<std::size_t>(type)];
 }
 
+void refuse_name(std::string_view option, std::string_view name,
+                 const std::vector<std::string>& names) {
+  const std::string all = fmt::format("{}", fmt::join(names, ", "));
+  tess::fail(tess::ErrorCode::bad_argument, option, ": there is no ", name, "; choose one of ", all,
+             tess::did_you_mean(name, all));
+}
+
 KernelType parse_kernel(std::string_view name) {
   const auto& names = kernel_names();
   const auto at = std::ranges::find(names, name);
-  if (at == names.end())
-    tess::fail(
-        tess::ErrorCode::bad_argument,
-        fmt::format("-kernel: there is no {}; choose one of {}", name, fmt::join(names, ", ")));
+  if (at == names.end()) refuse_name("-kernel", name, names);
   return static_cast<KernelType>(at - names.begin());
 }
 

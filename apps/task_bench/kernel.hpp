@@ -25,6 +25,9 @@ enum class KernelType : std::uint8_t {
 [[nodiscard]] const std::string& name_of(KernelType type);
 /// Throws tess::Error that lists the names for any other.
 [[nodiscard]] KernelType parse_kernel(std::string_view name);
+/// Throws tess::Error for a name that is none of these.
+[[noreturn]] void refuse_name(std::string_view option, std::string_view name,
+                              const std::vector<std::string>& names);
 
 struct Kernel {
   KernelType type = KernelType::empty;

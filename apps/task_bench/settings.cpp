@@ -105,7 +105,7 @@ std::string graph_help() {
   std::string out = "Options of a graph (-and begins the next; all graphs run at once):\n";
   for (const GraphOption& one : graph_options())
     out += fmt::format("  {:<16} {}\n", fmt::format("{} {}", one.name, one.value), one.meaning);
-  return out + '\n' + tess::options_help();
+  return out;
 }
 
 /// Takes the graphs out of the command line; returns the other words.
@@ -192,7 +192,11 @@ bool parse(int argc, char** argv, std::int32_t n_pes, kit::Driver& driver, Setti
       .between(1, 1'000'000'000);
   std::vector<Given> graphs;
   std::vector<char*> rest = take_graphs(argc, argv, graphs);
-  if (!driver.parse(static_cast<int>(rest.size()), rest.data(), graph_help())) return false;
+  driver.footer(graph_help());
+  driver.examples({"-steps 100 -width 8 -type stencil_1d -kernel compute_bound -iter 1000",
+                   "-steps 50 -width 8 -type fft -and -steps 20 -width 4 -type tree --pes 2",
+                   "-metg -type nearest -steps 50 --pes 2 --plot metg.svg"});
+  if (!driver.parse(static_cast<int>(rest.size()), rest.data())) return false;
   if (driver.is_given("--balance")) s.balance = tess::parse_balance(s.strategy);
   complete(s, graphs, n_pes);
   if (s.balance && s.balance->when != tess::BalanceWhen::periodic) return true;

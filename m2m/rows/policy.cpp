@@ -1,5 +1,6 @@
 #include "m2m/policy.hpp"
 
+#include "runtime/core/did_you_mean.hpp"
 #include "runtime/core/error.hpp"
 #include "runtime/core/number.hpp"
 
@@ -16,7 +17,8 @@ OutsidePolicy parse_policy(const std::string& text) {
     if (value && !std::isinf(*value)) return UseValue{*value};
   }
   fail(ErrorCode::bad_argument, "policy '", text,
-       "' is unknown; choose keep, nearest or value:NUMBER");
+       "' is unknown; choose keep, nearest or value:NUMBER",
+       did_you_mean(text, "keep nearest value:NUMBER"));
 }
 
 void fill_outside(const OutsidePolicy& policy, std::span<const Status> status,

@@ -1,6 +1,7 @@
 #include "m2m/transfer_kind.hpp"
 
 #include "m2m/mesh.hpp"
+#include "runtime/core/did_you_mean.hpp"
 #include "runtime/core/error.hpp"
 
 namespace tess::m2m {
@@ -60,7 +61,8 @@ TransferKind parse_transfer_kind(const std::string& text) {
     if (text == name_of(kind)) return kind;
     names += (names.empty() ? "" : ", ") + std::string(name_of(kind));
   }
-  fail(ErrorCode::bad_argument, "kind '", text, "' is unknown; choose one of ", names);
+  fail(ErrorCode::bad_argument, "kind '", text, "' is unknown; choose one of ", names,
+       did_you_mean(text, names));
 }
 
 }  // namespace tess::m2m

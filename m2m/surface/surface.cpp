@@ -1,6 +1,7 @@
 #include "m2m/surface.hpp"
 
 #include "m2m/surface/sides.hpp"
+#include "runtime/core/did_you_mean.hpp"
 #include "runtime/core/error.hpp"
 #include "runtime/core/number.hpp"
 
@@ -153,7 +154,7 @@ SurfaceMesh surface_of(const TetMesh& mesh, std::string_view part) {
   if (number)
     if (auto found = blocks(mesh, part, numbered)) return std::move(*found);
   fail(ErrorCode::bad_argument, "mesh ", mesh.name, " has no part '", part, "': there are ",
-       known_parts(mesh));
+       known_parts(mesh), did_you_mean(part, known_parts(mesh)));
 }
 
 }  // namespace tess::m2m

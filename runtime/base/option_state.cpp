@@ -1,5 +1,6 @@
 #include "runtime/base/option_state.hpp"
 
+#include "runtime/core/did_you_mean.hpp"
 #include "runtime/core/error.hpp"
 
 #include <algorithm>
@@ -27,7 +28,8 @@ std::string refusal(const OptionState& option, const std::string& value) {
   if (option.is_positive && !(number && *number > 0)) return shown + " is not a number above 0";
   const Texts& choices = option.choices;
   if (!choices.empty() && std::find(choices.begin(), choices.end(), value) == choices.end())
-    return text(shown, " not in {", join(choices, ','), "}");
+    return text(shown, " not in {", join(choices, ','), "}",
+                did_you_mean(value, join(choices, ',')));
   if (access.number != nullptr && !number) return shown + " is not " + access.what;
   return {};
 }

@@ -49,7 +49,7 @@ task_bench -steps 4 -width 4 -type stencil_1d -kernel compute_bound -iter 16
 task_bench -metg -steps 4 -width 4 -type stencil_1d
 bench --quick message
 """.strip().splitlines()]
-KEYS = ["program", "version", "commit", "machine", "options", "results"]
+KEYS = ["program", "version", "commit", "compiler", "mpi", "machine", "options", "results"]
 
 
 def check(command, folder):

@@ -1,10 +1,12 @@
 #!/usr/bin/env bash
 # Builds an outside project on Tessera in one way, and runs its programs alone and (runtime) under mpirun.
 #
-#     outside.sh installed BUILD COMPONENTS…     with find_package, from an installation of this build folder
+#     outside.sh installed BUILD COMPONENTS…     with find_package and pkg-config, from an installation of this build folder
+#     outside.sh packages BUILD COMPONENTS…      the same from Debian packages of this build folder, unpacked into a scratch root
 #     outside.sh source SOURCE COMPONENTS…       with add_subdirectory
 #
-# CXX is the compiler; MPIEXEC is empty where Tessera is built without MPI.
+# With an installation its programs, the tutorial and what tess_new makes are run, too. CXX is the compiler; MPIEXEC is empty where
+# Tessera is built without MPI.
 set -euo pipefail
 way=$1
 from=$(cd "$2" && pwd)
@@ -16,14 +18,22 @@ trap 'rm -rf "$scratch"' EXIT
 
 # Without optimisation: what is tested is the way, not the speed.
 options=(-G Ninja -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-O0 -DCMAKE_UNITY_BUILD=ON "-DCOMPONENTS=$(IFS=';'; echo "${components[*]}")")
-if [[ $way == installed ]]; then
-  cmake --install "$from" --prefix "$scratch/prefix" >/dev/null
+prefix=$scratch/prefix
+if [[ $way == packages ]]; then
+  cpack -G DEB --config "$from/CPackConfig.cmake" -B "$scratch/packages" >"$scratch/log" 2>&1 || { tail -20 "$scratch/log"; exit 1; }
+  prefix=$scratch/root/usr
+  for package in "$scratch"/packages/*.deb; do dpkg-deb -x "$package" "$scratch/root"; done
+elif [[ $way == installed ]]; then
+  cmake --install "$from" --prefix "$prefix" >"$scratch/log" 2>&1 || { tail -5 "$scratch/log"; exit 1; }
+fi
+if [[ $way != source ]]; then
   # As another machine has it: the source folder of the project is not looked at.
-  if grep -rl "$(dirname "$here")" "$scratch/prefix/lib/cmake" >"$scratch/leaks"; then
+  if grep -rl "$(dirname "$(dirname "$here")")" "$prefix/lib/cmake" "$prefix/lib/pkgconfig" "$prefix/share" >"$scratch/leaks"; then
     echo "FAILED: the installation names the source folder: $(cat "$scratch/leaks")"
     exit 1
   fi
-  options+=("-DCMAKE_PREFIX_PATH=$scratch/prefix")
+  options+=("-DCMAKE_PREFIX_PATH=$prefix")
+  export PKG_CONFIG_PATH=$prefix/lib/pkgconfig
 else
   options+=("-DTESSERA=$from")
 fi
@@ -81,8 +91,59 @@ if [[ " ${components[*]} " == *" runtime "* && " ${components[*]} " == *" m2m "*
   [[ -z ${MPIEXEC:-} ]] || prints "error below 1e-14: yes" "$MPIEXEC" --allow-run-as-root --oversubscribe -n 2 "$program" --pes 2
 fi
 
-# The project of README.md, with hello as its main.cpp.
+# says PATTERN COMMAND…: the command ends well, and prints a line that matches.
+says() {
+  local pattern=$1
+  shift
+  if "$@" >"$scratch/out" 2>&1 && grep -Eq -- "$pattern" "$scratch/out"; then
+    echo "ok: ${*##*/}"
+  else
+    echo "FAILED: $* does not print '$pattern': $(tail -5 "$scratch/out")"
+    failed=1
+  fi
+}
+if [[ $way == packages ]]; then
+  name=_$(sed -n 's/^set(CPACK_PACKAGE_VERSION "\(.*\)")/\1/p' "$from/CPackConfig.cmake")_$(dpkg --print-architecture).deb
+  says 'libc6 .*libopenmpi3' dpkg-deb -f "$scratch/packages/tessera-bin$name" Depends
+  says 'libboost1.81-dev, libfmt-dev.*libopenmpi-dev' dpkg-deb -f "$scratch/packages/libtessera-dev$name" Depends
+  says '^ Section: science$' dpkg-deb --info "$scratch/packages/tessera-bin$name"
+fi
+if [[ $way != source ]]; then
+  for component in "${components[@]}"; do
+    # shellcheck disable=SC2046
+    "${CXX:-g++}" -std=c++20 -O0 "$here/outside/$component.cpp" -o "$scratch/by_pkg_config" $(pkg-config --cflags --libs "tessera-$component") || failed=1
+    prints "${answers[$component]}" "$scratch/by_pkg_config"
+  done
+  says '^hello \(Tessera\) [0-9.]+, commit [0-9a-z-]+, preset ' "$prefix/bin/hello" --version
+  says '^tess_monitor \(Tessera\) ' "$prefix/bin/tess_monitor" --version
+  says '^ *linear' "$prefix/bin/m2m_transfer" kuhn:4 kuhn:5 --fields linear --pes 2 --out "$scratch/moved.exo"
+  says 'found +0 inside, 64 boundary, 0 snapped, 0 outside' "$prefix/bin/m2m_transfer" "$scratch/moved.exo" kuhn:3 --fields linear
+  if [[ -e $prefix/bin/tutorial_01_hello ]] || ls "$prefix/bin" | grep -E '^test_'; then
+    echo "FAILED: the tutorial or tests are installed as programs"
+    failed=1
+  fi
+  cmake -S "$prefix/share/doc/tessera/examples" -B "$scratch/examples" "${options[@]}" >"$scratch/log" 2>&1 || { cat "$scratch/log"; exit 1; }
+  cmake --build "$scratch/examples" --target tutorial_01_hello tutorial_11_race >"$scratch/log" 2>&1 || { tail -40 "$scratch/log"; exit 1; }
+  says 'says hello to Ada' "$scratch/examples/tutorial_01_hello" --pes 2
+  says 'sum of squares' "$scratch/examples/tutorial_11_race" --pes 2
+fi
+
+# The project of README.md, with hello as its main.cpp; and what tess_new makes.
 if [[ $way == installed ]]; then
+  cd "$scratch"
+  says '^wave: a program' "$prefix/bin/tess_new" wave
+  for refusal in "wave:wave is there already" "2d:'2d' is no name" "a-b:'a-b' is no name" "class:'class' is no name" "test:'test' means" ":'' is no name" "--nmae:unknown option --nmae"; do
+    code=0
+    "$prefix/bin/tess_new" "${refusal%%:*}" 2>"$scratch/out" || code=$?
+    says "^2 tess_new: error: ${refusal#*:}" echo "$code $(cat "$scratch/out")"
+  done
+  says '^Usage: tess_new NAME' "$prefix/bin/tess_new" --help
+  says '^tess_new \(Tessera\) [0-9.]+$' "$prefix/bin/tess_new" --version
+  cmake -S wave -B wave/build "${options[@]}" >"$scratch/log" 2>&1 || { cat "$scratch/log"; exit 1; }
+  cmake --build wave/build >"$scratch/log" 2>&1 || { tail -40 "$scratch/log"; exit 1; }
+  says '^100% tests passed' ctest --test-dir wave/build
+  says '^the blocks add up to 28$' wave/build/wave --pes 2
+  says 'seeds 1 to 9|seeds 1..9|9 seeds' wave/build/wave --sim pes=4,migrate=0,seeds=1..9
   cp -r "$here/small" "$scratch/small"
   cp "$here/../../apps/hello/main.cpp" "$scratch/small/main.cpp"
   cmake -S "$scratch/small" -B "$scratch/small/build" "${options[@]}" >"$scratch/log" 2>&1 || { cat "$scratch/log"; exit 1; }

@@ -53,6 +53,9 @@ TEST_CASE("the help has each option with what it takes, its range and its defaul
   CAPTURE(help);
   CHECK(has_line(help, "Arguments:\n  FILE...     what it reads"));
   CHECK(has_line(help, "Options:\n  -h,--help   print this text"));
+  CHECK(has_line(help, "  --version   print the version, the commit, the compiler and MPI"));
+  CHECK(help.find("--help-runtime\n              print the runtime's") != std::string::npos);
+  CHECK_FALSE(has_line(help, "Runtime:"));
   CHECK(has_line(help, "  --blocks N  blocks on each axis (1 to 64; default 4)"));
   CHECK(has_line(help, "  --steps N   steps (default 50)"));
   CHECK(has_line(help, "  --seeds FROM:TO\n              both included (default 1:100)"));
@@ -212,6 +215,47 @@ TEST_CASE("an option that another leaves unused is refused with the value given"
   CHECK(refusal({"one", "two"}) == "NAME one,two" + other);
 }
 
+TEST_CASE("questions end the program, and one without the runtime has no --help-runtime",
+          "[runtime][command_line]") {
+  std::int32_t n_steps = 4;
+  const auto goes_on = [&](std::vector<std::string> words, const char* runtime_help) {
+    tess::CommandLine line("A program.");
+    line.option("--steps", n_steps, "steps");
+    std::string name = "program";
+    std::vector<char*> arguments{name.data()};
+    for (std::string& word : words) arguments.push_back(word.data());
+    return line.parse(static_cast<int>(arguments.size()), arguments.data(), runtime_help);
+  };
+  for (const char* const question : {"-h", "--help", "--version", "--help-runtime"}) {
+    CAPTURE(question);
+    CHECK_FALSE(goes_on({question}, "Runtime:\n  --pes N\n"));
+    CHECK_FALSE(goes_on({"--steps", "3", question, "--nonsense"}, "Runtime:\n  --pes N\n"));
+  }
+  CHECK_FALSE(goes_on({"--version"}, ""));
+  CHECK_THROWS_WITH(goes_on({"--help-runtime"}, ""),
+                    Catch::Contains("unknown option --help-runtime"));
+  CHECK_THROWS_WITH(goes_on({"--pse"}, ""), Catch::Contains("unknown option --pse (--help"));
+}
+
+TEST_CASE("examples and the footer stand below the options", "[runtime][command_line]") {
+  tess::CommandLine line("A program.");
+  line.footer("Scenes:\n  planes:N  parallel planes\n");
+  line.examples({"--steps 3", "planes:9 --pes 2"});
+  REQUIRE(parse(line, {}));
+  CHECK(has_line(line.help(),
+                 "Examples:\n  program --steps 3\n  program planes:9 --pes 2\n\nScenes:"));
+}
+
+TEST_CASE("a mistyped choice is refused with the nearest one", "[runtime][command_line]") {
+  std::string when;
+  tess::CommandLine line("A program.");
+  line.option("--when", when, "when it writes").one_of({"never", "always"});
+  CHECK_THROWS_WITH(parse(line, "--when", "alwyas"),
+                    Catch::Contains("alwyas not in {never,always}; did you mean always? (--help"));
+  CHECK_THROWS_WITH(parse(line, "--when", "often"),
+                    Catch::Contains("often not in {never,always} (--help"));
+}
+
 TEST_CASE("an unknown option is refused with the nearest one, of the program or the runtime",
           "[runtime][command_line]") {
   std::int32_t n_steps = 4;
@@ -249,7 +293,8 @@ TEST_CASE("a run refuses options that its program has not read", "[runtime][comm
   };
   CHECK(result({"--pse", "2"}, false) == std::pair(2, false));
   CHECK(result({"file", "--pes", "1", "-x"}, false) == std::pair(2, false));
-  CHECK(result({"--help"}, false) == std::pair(0, false));
+  for (const char* const question : {"--help", "-h", "--version", "--help-runtime"})
+    CHECK(result({question}, false) == std::pair(0, false));
   CHECK(result({"--steps", "2"}, true) == std::pair(0, true));
   CHECK(result({"file", "-2", "--pes", "1"}, false) == std::pair(0, true));
 }

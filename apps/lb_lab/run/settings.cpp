@@ -2,6 +2,7 @@
 
 #include "runtime/balance/prediction.hpp"
 #include "runtime/balance/strategy.hpp"
+#include "runtime/core/did_you_mean.hpp"
 #include "runtime/core/error.hpp"
 #include "runtime/core/number.hpp"
 
@@ -87,7 +88,8 @@ tess::BalanceWhen parse_when(std::string_view value) {
   if (value == "at_sync") return tess::BalanceWhen::at_sync;
   if (value == "periodic") return tess::BalanceWhen::periodic;
   if (value == "automatic") return tess::BalanceWhen::automatic;
-  refuse("--when: ", value, " is not a kind of rounds; choose at_sync, periodic or automatic");
+  refuse("--when: ", value, " is not a kind of rounds; choose at_sync, periodic or automatic",
+         tess::did_you_mean(value, "at_sync periodic automatic"));
 }
 
 Problem problem_of(const Settings& s, std::uint32_t workload, std::int32_t n_pes) {

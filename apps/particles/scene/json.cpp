@@ -1,5 +1,6 @@
 #include "apps/particles/scene/json.hpp"
 
+#include "runtime/core/did_you_mean.hpp"
 #include "runtime/core/error.hpp"
 
 #include <algorithm>
@@ -92,7 +93,7 @@ void Node::read(std::initializer_list<Key> table) const {
   for (const auto& [key, value] : value_->items())
     if (std::ranges::find(names, key) == names.end())
       fail(ErrorCode::bad_value, file_, ": ", below(shown(key)),
-           ": unknown key; allowed here: ", allowed);
+           ": unknown key; allowed here: ", allowed, tess::did_you_mean(key, allowed));
   for (const Key& key : table) {
     if (has(key.name_))
       key.take_((*this)[key.name_]);

@@ -7,6 +7,7 @@
 #include "runtime/balance/strategies/refine.hpp"
 #include "runtime/balance/strategy.hpp"
 #include "runtime/balance/unknown_loads.hpp"
+#include "runtime/core/did_you_mean.hpp"
 #include "runtime/core/error.hpp"
 
 #include <algorithm>
@@ -77,8 +78,10 @@ Strategy make_strategy(std::string_view name, std::uint64_t seed) {
         if (n_known_loads(s) == s.elements.size()) return run(s, seed);
         return run(with_unknown_pinned(s), seed);
       };
-  fail(ErrorCode::bad_argument, fmt::format("no balance strategy '{}'; choose one of {}", name,
-                                            fmt::join(strategy_names(), ", ")));
+  const std::string names = fmt::format("{}", fmt::join(strategy_names(), ", "));
+  fail(ErrorCode::bad_argument,
+       fmt::format("no balance strategy '{}'; choose one of {}", name, names),
+       did_you_mean(name, names));
 }
 
 bool needs_positions(std::string_view name) {

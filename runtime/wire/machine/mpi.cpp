@@ -153,4 +153,14 @@ std::unique_ptr<Machine> make_mpi_machine(int& argc, char**& argv, MpiOptions op
   return std::make_unique<MpiMachine>(argc, argv, options);
 }
 
+std::string mpi_version() {
+  std::array<char, MPI_MAX_LIBRARY_VERSION_STRING> text{};
+  int n = 0;
+  MPI_Get_library_version(text.data(), &n);  // it may be called before MPI_Init
+  // "Open MPI v4.1.4, package: …".
+  std::string version(text.data(), std::string_view(text.data()).find_first_of(",\n"));
+  if (const std::size_t v = version.find(" v"); v != std::string::npos) version.erase(v + 1, 1);
+  return version;
+}
+
 }  // namespace tess::detail

@@ -13,6 +13,8 @@
 #include "runtime/wire/machine/machine.hpp"
 #include "runtime/wire/machine/team.hpp"
 
+#include <string>
+
 namespace tess::detail {
 
 struct MpiOptions {
@@ -28,6 +30,9 @@ struct MpiOptions {
 /// The number of processes that mpirun or srun started, by the environment; 1 for a process that
 /// was started alone, and 0 if it is not known.
 [[nodiscard]] int processes_of_job();
+
+/// "Open MPI 4.1.4": the library that is loaded; "no MPI" where Tessera is built without it.
+[[nodiscard]] std::string mpi_version();
 
 /// True between MPI_Init and MPI_Finalize of the program: a run then uses its processes, through a
 /// communicator of its own.

@@ -1,6 +1,7 @@
 #include "runtime/wire/machine/simulated_options.hpp"
 
 #include "runtime/base/words.hpp"
+#include "runtime/core/did_you_mean.hpp"
 #include "runtime/core/error.hpp"
 #include "runtime/core/hash.hpp"
 #include "runtime/core/number.hpp"
@@ -176,12 +177,14 @@ SimulatedOptions parse_simulated(const std::string& given) {
     at = comma + 1;
     const std::size_t equals = part.find('=');
     const std::string key = equals == std::string::npos ? "file" : part.substr(0, equals);
+    const std::string keys =
+        std::string("pes, per-process, cost, seed, seeds, compare, migrate, file, ") + machine_keys;
     const Value value{"--sim " + key, equals == std::string::npos ? part : part.substr(equals + 1)};
     if (key == "file") {
       read_simulated_file(value.text, options);
     } else if (!take_of_machine(key, value, options) && !take_of_run(key, value, options)) {
-      fail(ErrorCode::bad_argument, "--sim: unknown key ", key,
-           " (pes, per-process, cost, seed, seeds, compare, migrate, file, ", machine_keys, ")");
+      fail(ErrorCode::bad_argument, "--sim: unknown key ", key, " (", keys, ")",
+           did_you_mean(key, keys));
     }
   }
   if (options.seeds && options.seeds->first > options.seeds->last)

@@ -4,6 +4,10 @@
 
 namespace tess::detail {
 
+std::string mpi_version() {
+  return "no MPI";
+}
+
 bool program_owns_mpi() {
   return false;
 }

@@ -112,7 +112,8 @@ int fuzz(int argc, char** argv) {
   std::string names = "Scenarios:\n";
   for (const Scenario& one : tess::fuzz::scenarios())
     names += fmt::format("  {:<25} {}\n", one.name, one.claim);
-  if (!line.parse(argc, argv, names)) return 0;
+  line.footer(names);
+  if (!line.parse(argc, argv, "")) return 0;
   if (!runs.given_seeds.empty()) runs.seeds = kit::parse_seeds(runs.given_seeds);
   if (tess::under_mpirun()) runs.job = tess::fuzz::make_job_machine(1);
   if (runs.name != "all" && tess::fuzz::scenario(runs.name).on < runs.on())
