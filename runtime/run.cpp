@@ -272,7 +272,7 @@ std::string options_help() {
       "  --stats     print the counters of each PE: messages, bytes, busy and idle seconds, "
       "chares\n"
       "  --trace F   write what each PE ran, and which send caused it, as JSON for Perfetto or\n"
-      "              chrome://tracing (process p of several writes F.p)\n"
+      "              chrome://tracing, and print the critical path\n"
       "  --version   print the version, the commit, the compiler and MPI\n";
   if (detail::make_monitor != nullptr)
     text +=
@@ -322,9 +322,10 @@ int run_on(Setup& setup, std::function<void()> main) {
   refuse_inside_run();
   if (asks_for_help()) return 0;
   TESS_CHECK(!setup.started, "run() with a Setup that has run: make one for each run");
-  detail::Runtime runtime(*setup.machine, setup.options,
-                          {&detail::element_text, &detail::element_key, &detail::element_state},
-                          std::move(main));
+  detail::Runtime runtime(
+      *setup.machine, setup.options,
+      {&detail::element_text, &detail::element_key, &detail::element_state, &detail::element_load},
+      std::move(main));
   detail::Service service(runtime, setup.options.signals);
   runtime.serve(service);
   std::unique_ptr<detail::ProcessMonitor> monitor;

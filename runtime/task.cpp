@@ -47,7 +47,7 @@ void resume(Task::Handle task) {
     pe.context().epoch = context.epoch;
     pe.context().led_by = context.led_by;
     pe.context().led_in = context.led_in;
-    const WatchedMain watched(pe.measuring().watch(), pe.running());
+    const MainScope scope(pe);
     task.resume();
     return;
   }

@@ -8,6 +8,7 @@
 #include "apps/lb_lab/output/report.hpp"
 #include "apps/lb_lab/sweep.hpp"
 #include "apps/lb_lab/workload/kernel.hpp"
+#include "runtime/more/balance_offline.hpp"
 #include "runtime/runtime.hpp"
 
 namespace lb_lab {
@@ -18,11 +19,21 @@ constexpr kit::Modes replaying = kit::Mode::own(0);
 tess::Task measure(Settings settings, double steps_a_second, kit::Driver& driver) {
   Sweep sweep;
   sweep.settings = std::move(settings);
-  sweep.on_row = [](const Row& row) { tess::print_text(report().line(row)); };
+  kit::Progress& progress = driver.progress();
+  const Settings& s = sweep.settings;
+  const std::size_t n_rows = s.workloads.size() * s.per_pe.size() * s.strategies.size();
+  progress.phase("measuring");
+  progress.part(1, n_rows);
+  sweep.on_row = [&](const Row& row) {
+    progress.clear();
+    tess::print_text(report().line(row));
+    progress.part(std::min(sweep.rows.size() + 1, n_rows), n_rows);
+  };
   for (const std::string& one : sweep.settings.left_out)
     tess::print_text("left out: " + one + '\n');
   tess::print_text(report().head());
   co_await run_all(sweep, steps_a_second);
+  progress.clear();
   tess::print_text(best_text(sweep));
   driver.write(report().json(sweep.rows), {{"best", best_json(sweep)}});
   if (!sweep.wrong.empty()) kit::end_with("lb_lab: wrong answer: " + sweep.wrong);
@@ -33,6 +44,8 @@ void add_options(kit::Driver& driver, Settings& s) {
       .option("--strategy NAMES", s.strategies,
               "names, or all (--list); the strategy none is always run")
       .separated_by(',');
+  driver.option("--strategy-library FILE", s.library,
+                "a shared library with strategies of your own, which --strategy names");
   driver.option("--speed X,X,…", s.speeds, "speed of each PE, as 1,1,0.5").separated_by(',');
   driver
       .option("--memory-limit BYTES", s.memory_limits,
@@ -87,6 +100,7 @@ int start(tess::Setup& setup, int argc, char** argv) {
       {"--list", "--workload linear --per-pe 4 --strategy none,greedy --iterations 20 --pes 2",
        "--workload moving_hot_spot --strategy all --sim pes=8,latency=2us --iterations 20"});
   if (!driver.parse(argc, argv)) return 0;
+  if (!settings.library.empty()) tess::balance::load_strategy_library(settings.library);
   if (list) {
     if (driver.speaks()) tess::print_text(list_text());
     return 0;
@@ -98,10 +112,13 @@ int start(tess::Setup& setup, int argc, char** argv) {
   for (const std::string& file : replay_files(settings.replay))
     driver.files().reads("--replay", file);
   if (driver.mode() == replaying) {
-    const Replayed replayed = replay(settings);
+    const Replayed replayed = replay(settings, &driver.progress());
     if (!driver.speaks()) return 0;
-    tess::print_text(replayed.table);
+    driver.progress().clear();
+    tess::print_text(replayed.table + replayed.summary);
     driver.write(replayed.rows, {{"left_out", replayed.left_out},
+                                 {"strategies", replayed.strategies},
+                                 {"last_phase", replayed.last_phase},
                                  {"communications_left_out", replayed.n_communications}});
     return 0;
   }

@@ -2,6 +2,7 @@
 
 #include "apps/kit/median.hpp"
 #include "apps/kit/wrong_answer.hpp"
+#include "runtime/more/load_measurement.hpp"
 
 #include <algorithm>
 #include <deque>
@@ -119,12 +120,14 @@ tess::Task Bench::measure(std::optional<std::int64_t> iterations, Row* row) {
 
 tess::Task Bench::measure_all(Result* result) {
   result->graphs = graphs_;
+  std::optional<std::int64_t> last;  // of METG's search: close to what it found
   if (settings_.metg) {
     MetgSearch search;
     while (const auto iterations = search.next()) {
       Row row;
       co_await measure(*iterations, &row);
       search.tell(row);
+      last = iterations;
     }
     result->metg = search.found();
     result->rows = search.rows();
@@ -135,6 +138,14 @@ tess::Task Bench::measure_all(Result* result) {
   }
   for (const tess::BalancerProxy& balancer : balancers_)
     result->rounds.push_back(balancer.history());
+  // A run of its own: the measurement costs as much as a message.
+  tess::LoadMeasurement measurement;
+  std::vector<tess::PeLoad> loads;
+  double seconds = 0;
+  co_await measurement.begin();
+  co_await run(last, &seconds);
+  co_await measurement.end(&loads);
+  result->limits = tess::summarise(loads);
 }
 
 }  // namespace

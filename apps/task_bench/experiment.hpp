@@ -5,6 +5,7 @@
 #include "apps/task_bench/column.hpp"
 #include "apps/task_bench/metg.hpp"
 #include "apps/task_bench/settings.hpp"
+#include "runtime/core/load_summary.hpp"
 
 #include <functional>
 #include <vector>
@@ -16,6 +17,7 @@ struct Result {
   std::vector<Graph> graphs;
   std::vector<Row> rows;
   std::optional<Metg> metg;
+  tess::LoadSummary limits;  ///< of one run more, at the grain of METG or the last one
   std::vector<std::vector<tess::balance::Round>> rounds;  ///< per graph, where a balancer ran
 };
 

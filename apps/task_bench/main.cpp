@@ -19,6 +19,8 @@ tess::Task measure(const Settings& settings, kit::Driver& driver) {
     driver.progress().part(std::min(results.size() + 2, n_cases), n_cases);
   };
   co_await run_all(settings, tell, results);
+  if (settings.metg)
+    for (const Result& result : results) tess::print_text(limits_text(result));
   kit::Json options = driver.document({}).at("options");
   options["graphs"] = settings.words;
   driver.write(report().json(results), {{"options", options}});

@@ -1,5 +1,7 @@
 #include "apps/task_bench/report.hpp"
 
+#include "apps/kit/limits.hpp"
+
 #include <algorithm>
 #include <fmt/format.h>
 
@@ -62,6 +64,7 @@ constexpr kit::Column<Result> columns[] = {
     {"metg_wall_us", "", nullptr, us<&Metg::wall_seconds>},
     {"metg_is_upper_bound", "", nullptr, [](R r) -> Json { return r.metg && r.metg->below; }},
     {"", "grains", "7", [](R r) -> Json { return r.rows.size(); }},
+    {"limits", "", nullptr, [](R r) -> Json { return kit::limits_json(r.limits); }},
     {"grains", "", nullptr, [](R r) { return grains().json(r.rows); }}};
 
 }  // namespace
@@ -69,6 +72,10 @@ constexpr kit::Column<Result> columns[] = {
 const kit::Rows<Result>& report() {
   static const kit::Rows<Result> rows(columns);
   return rows;
+}
+
+std::string limits_text(const Result& result) {
+  return fmt::format("Limits of {}: {}\n", first(result).type, tess::describe(result.limits));
 }
 
 std::string run_text(const Result& result) {
@@ -96,7 +103,7 @@ std::string run_text(const Result& result) {
     text += fmt::format("Balance Rounds {}, {} columns moved, max/average {:.3f} -> {:.3f}\n",
                         rounds.size(), n_moved, rounds.front().before, rounds.back().before);
   }
-  return text;
+  return text + limits_text(result);
 }
 
 std::string explain(const Settings& settings) {

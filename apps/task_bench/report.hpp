@@ -14,6 +14,9 @@ namespace task_bench {
 /// "Total Tasks 16 …" as Task Bench prints it, and the efficiency.
 [[nodiscard]] std::string run_text(const Result& result);
 
+/// The sentence about its limits, as a line.
+[[nodiscard]] std::string limits_text(const Result& result);
+
 /// The features that a case uses and does not use.
 [[nodiscard]] std::string explain(const Settings& settings);
 

@@ -1,6 +1,7 @@
 #include "apps/task_bench/settings.hpp"
 
 #include "runtime/core/number.hpp"
+#include "runtime/more/balance_offline.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -188,6 +189,8 @@ bool parse(int argc, char** argv, std::int32_t n_pes, kit::Driver& driver, Setti
   driver.option("--balance STRATEGY", s.strategy,
                 "columns migrate: "
                 "STRATEGY[,when=at_sync|automatic|periodic][,period=50ms][,report] (README)");
+  driver.option("--strategy-library FILE", s.library,
+                "a shared library with strategies of your own, which --balance names");
   driver.option("--balance-every", s.sync_every, "steps between barriers")
       .between(1, 1'000'000'000);
   std::vector<Given> graphs;
@@ -197,6 +200,7 @@ bool parse(int argc, char** argv, std::int32_t n_pes, kit::Driver& driver, Setti
                    "-steps 50 -width 8 -type fft -and -steps 20 -width 4 -type tree --pes 2",
                    "-metg -type nearest -steps 50 --pes 2 --plot metg.svg"});
   if (!driver.parse(static_cast<int>(rest.size()), rest.data())) return false;
+  if (!s.library.empty()) tess::balance::load_strategy_library(s.library);
   if (driver.is_given("--balance")) s.balance = tess::parse_balance(s.strategy);
   complete(s, graphs, n_pes);
   if (s.balance && s.balance->when != tess::BalanceWhen::periodic) return true;

@@ -22,7 +22,7 @@ struct Settings {
   std::int32_t repeat = 0;  ///< runs of each grain; the median counts
   bool fastest = false;     ///< or the fastest
   std::int32_t sync_every = 10;
-  std::string strategy;
+  std::string strategy, library;
   std::optional<tess::BalanceOptions> balance;
   std::vector<std::int32_t> spoiled;  ///< step and point of a task; or empty
   std::string csv;

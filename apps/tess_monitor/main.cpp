@@ -165,6 +165,7 @@ class Heat {
 int watch(const Options& options) {
   Events events(options, "/events?");
   Heat heat(options);
+  bool is_past = true;
   const bool clears = isatty(STDOUT_FILENO) != 0;
   std::string kind, round;
   json data;
@@ -174,7 +175,8 @@ int watch(const Options& options) {
       return 0;
     }
     if (kind == "round") round = data["text"];
-    if (kind != "frame") continue;
+    is_past = is_past && kind != "now";  // a browser gets the frames of minutes first
+    if (is_past || kind != "frame") continue;
     if (clears) fmt::print("\033[H\033[2J");
     heat.follow(data);
     print_frame(data, {round, heat.line()}, options.n_rows);
@@ -196,7 +198,8 @@ int main(int argc, char** argv) {
                 "sums up the heat map of the array with this in its name");
     line.option("--by", options.by, "what the heat map shows: load, or the PE that holds most")
         .one_of({"load", "pe"});
-    line.option("--frames", options.n_frames, "ends after so many frames; 0: when the run ends")
+    line.option("--frames", options.n_frames,
+                "ends after so many frames from now on; 0: when the run ends")
         .between(0, 1'000'000'000);
     line.option("--rows", options.n_rows, "lines for PEs; more PEs share them").between(1, 10'000);
     if (!line.parse(argc, argv, "")) return 0;

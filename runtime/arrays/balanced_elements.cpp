@@ -57,8 +57,11 @@ bool BalancedElements::awake(Element& element) {
   return true;
 }
 
-void BalancedElements::end_wait(Pe& pe, const Element& element) {
-  if (element.balance_) (void)take_wait(pe, *element.balance_, SyncPhase::runs);
+void BalancedElements::ends(Pe& pe, const Element& element) {
+  if (!element.balance_) return;
+  (void)take_wait(pe, *element.balance_, SyncPhase::runs);
+  if (pe.measuring().measures_elements())
+    pe.measuring().ended(element.balance_->load.in_run, [&] { return element_text(element); });
 }
 
 bool BalancedElements::waits(const Element& element) {

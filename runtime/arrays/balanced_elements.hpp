@@ -51,7 +51,7 @@ class BalancedElements {
 
   // Records.
 
-  /// The balancer's record of an element; null unless requested.
+  /// The record of an element; null unless a balancer or --stats requested it.
   [[nodiscard]] static BalanceRecord* record_of(const Element& element) {
     return element.balance_.get();
   }
@@ -82,8 +82,9 @@ class BalancedElements {
   /// The message of resume() has arrived. Returns false if it was sent to an earlier incarnation of
   /// the element; then the wait of this one, if it waits, goes on.
   [[nodiscard]] static bool awake(Element& element);
-  /// Releases the epoch of an element that waits and is being destroyed.
-  static void end_wait(Pe& pe, const Element& element);
+  /// The element is being destroyed: releases the epoch of its wait. With --stats its load may be
+  /// the largest.
+  static void ends(Pe& pe, const Element& element);
   /// True if the element waits, or the message that resumes it is under way.
   [[nodiscard]] static bool waits(const Element& element);
   /// Appends a line for each of these elements that waits although there is no balancer.

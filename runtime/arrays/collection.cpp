@@ -46,6 +46,11 @@ std::string element_key(const Element& element) {
   return reply_key(Collection::of(element).id(), Collection::of(element).key_of(element));
 }
 
+LoadRecord* element_load(Element& element) {
+  BalanceRecord* const record = BalancedElements::record_of(element);
+  return record != nullptr ? &record->load : nullptr;
+}
+
 std::string element_state(const Element& element) {
   // A report goes on.
   try {
@@ -311,8 +316,9 @@ void Collection::describe_waiting(std::vector<std::string>& lines) const {
   balanced_.describe_waiting(elements_, lines);
 }
 
-LoadRecord* ElementScope::load_of(const Element& element) {
-  return element.balance_ ? &element.balance_->load : nullptr;
+LoadRecord* ElementScope::load_of(Pe& pe, Element& element) {
+  if (!element.balance_ && !pe.measuring().measures_elements()) return nullptr;
+  return &BalancedElements::make_record(element).load;
 }
 
 void Collection::end() {
@@ -321,7 +327,7 @@ void Collection::end() {
   balanced_.collection_ends();
   for (Element* element : elements_) {
     if (element->n_suspended_ != 0) element->destroy_requested_ = true;
-    BalancedElements::end_wait(pe_, *element);
+    BalancedElements::ends(pe_, *element);
   }
   broadcasts_.end();
   reductions_.end();

@@ -285,7 +285,7 @@ class ElementScope {
     ++element.n_suspended_;
     element.has_run_ = true;
     if (meter_ != nullptr) [[unlikely]]
-      outer_ = meter_->enter({load_of(element), action});
+      outer_ = meter_->enter({load_of(pe, element), action});
   }
   ElementScope(const ElementScope&) = delete;
   ElementScope& operator=(const ElementScope&) = delete;
@@ -304,7 +304,7 @@ class ElementScope {
 
  private:
   void force_migration();
-  [[nodiscard]] static LoadRecord* load_of(const Element& element);
+  [[nodiscard]] static LoadRecord* load_of(Pe& pe, Element& element);
   Pe& pe_;
   Element& element_;
   Context context_;  // used by address: a copy of what was just written would stall

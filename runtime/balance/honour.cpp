@@ -6,20 +6,21 @@
 namespace tess::balance {
 namespace {
 
-void check(const Snapshot& s, const Assignment& wanted) {
+void check(const Snapshot& s, const Assignment& wanted, std::string_view strategy) {
   if (wanted.size() != s.elements.size())
-    fail(ErrorCode::bad_value, "balance strategy: returned ", wanted.size(), " PEs for ",
-         s.elements.size(), " elements; give one for each");
+    fail(ErrorCode::bad_value, "balance strategy ", strategy, ": returned ", wanted.size(),
+         " PEs for ", s.elements.size(), " elements; give one for each");
   for (std::size_t i = 0; i < wanted.size(); ++i)
     if (wanted[i].value < 0 || slot(wanted[i]) >= s.pes.size())
-      fail(ErrorCode::out_of_range, "balance strategy: element ", i, " to ", wanted[i],
-           "; choose one of ", s.pes.size());
+      fail(ErrorCode::out_of_range, "balance strategy ", strategy, ": element ", i,
+           s.elements.index.empty() ? "" : " " + s.elements.index[i], " to ", wanted[i],
+           "; choose one of PE 0 … ", s.pes.size() - 1);
 }
 
 }  // namespace
 
-Assignment honour(const Snapshot& s, const Assignment& wanted) {
-  check(s, wanted);
+Assignment honour(const Snapshot& s, const Assignment& wanted, std::string_view strategy) {
+  check(s, wanted, strategy);
   Assignment result = s.elements.pe;
   Loads loads(s);
   std::vector<std::size_t> open;

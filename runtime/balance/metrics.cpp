@@ -1,6 +1,7 @@
 #include "runtime/balance/metrics.hpp"
 
 #include "runtime/balance/unknown_loads.hpp"
+#include "runtime/core/text.hpp"
 
 #include <algorithm>
 
@@ -34,6 +35,34 @@ Metrics measure(const Snapshot& s, const Assignment& assignment) {
     slowest = std::max(slowest, s.pes.background[p] + work[p] / s.pes.speed[p]);
   if (const double average = average_time(s); average > 0) m.max_over_average = slowest / average;
   return m;
+}
+
+std::vector<std::vector<std::uint64_t>> bytes_between(const Snapshot& s,
+                                                      const Assignment& assignment) {
+  std::vector<std::vector<std::uint64_t>> bytes(s.pes.size(),
+                                                std::vector<std::uint64_t>(s.pes.size(), 0));
+  for (const Edge& e : s.edges) bytes[slot(assignment[e.from])][slot(assignment[e.to])] += e.bytes;
+  return bytes;
+}
+
+std::vector<PeLoad> loads_of_pes(const Snapshot& s, const Assignment& assignment) {
+  const double assumed = mean_load(s);
+  std::vector<PeLoad> pes(s.pes.size());
+  for (std::size_t p = 0; p < pes.size(); ++p) {
+    pes[p].busy = s.pes.background[p];
+    pes[p].speed = s.pes.speed[p];
+  }
+  for (std::size_t i = 0; i < assignment.size(); ++i) {
+    PeLoad& pe = pes[slot(assignment[i])];
+    const double seconds = s.elements.load[i].seconds_or(assumed) / pe.speed;
+    pe.busy += seconds;
+    if (seconds <= pe.largest) continue;
+    pe.largest = seconds;
+    pe.element = s.elements.index.empty() ? text("number ", i) : s.elements.index[i];
+  }
+  const double slowest = std::ranges::max_element(pes, {}, &PeLoad::busy)->busy;
+  for (PeLoad& pe : pes) pe.seconds = slowest;
+  return pes;
 }
 
 }  // namespace tess::balance

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "runtime/balance/snapshot.hpp"
+#include "runtime/core/load_summary.hpp"
 
 namespace tess::balance {
 
@@ -20,5 +21,13 @@ inline constexpr double least_gain = 0.005;
 /// speed) / speed, summed first.
 [[nodiscard]] double average_time(const Snapshot& snapshot);
 [[nodiscard]] Metrics measure(const Snapshot& snapshot, const Assignment& assignment);
+
+/// The communication matrix: the bytes that elements on PE [i] send to those on PE [j].
+[[nodiscard]] std::vector<std::vector<std::uint64_t>> bytes_between(const Snapshot& snapshot,
+                                                                    const Assignment& assignment);
+
+/// What each PE works in such a phase, which ends when the slowest has ended; for summarise().
+[[nodiscard]] std::vector<PeLoad> loads_of_pes(const Snapshot& snapshot,
+                                               const Assignment& assignment);
 
 }  // namespace tess::balance

@@ -36,21 +36,35 @@ std::string as_member(const std::string& name) {
   return name;
 }
 
-}  // namespace
+/// The function in "tess::detail::Call<Block, OfEntry, &Block::step>": Block::step.
+std::string_view function_in(std::string_view name) {
+  const auto function = name.rfind('&');
+  if (function == std::string_view::npos) return name;
+  name.remove_prefix(function + 1);
+  return name.substr(0, end_of_argument(name));
+}
 
-std::string plain_name(std::string_view compiler_name) {
-  // "tess::detail::Call<Block, OfEntry, &Block::step>" is shown as Block::step.
-  if (const auto function = compiler_name.rfind('&'); function != std::string_view::npos) {
-    compiler_name.remove_prefix(function + 1);
-    compiler_name = compiler_name.substr(0, end_of_argument(compiler_name));
-  }
+/// Without namespaces that say nothing.
+std::string without_noise(std::string_view compiler_name) {
   std::string name(compiler_name);
   for (const std::string_view noise :
        {"{anonymous}::", "(anonymous namespace)::", "tess::detail::", "tess::"}) {
     for (auto at = name.find(noise); at != std::string::npos; at = name.find(noise))
       name.erase(at, noise.size());
   }
-  return as_member(name);
+  return name;
+}
+
+}  // namespace
+
+bool is_of_runtime(std::string_view compiler_name) {
+  const std::string_view function = function_in(compiler_name);
+  const std::string name = without_noise(function);
+  return function.starts_with("tess::") && as_member(name) == name;
+}
+
+std::string plain_name(std::string_view compiler_name) {
+  return as_member(without_noise(function_in(compiler_name)));
 }
 
 }  // namespace tess

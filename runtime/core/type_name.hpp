@@ -54,6 +54,10 @@ template <auto Value>
 template <class T>
 inline constexpr std::string_view name_of_type = naming::type<T>();
 
+/// True for what the user did not write: "tess::detail::call_arrives", but not
+/// "tess::detail::Call<Block, &Block::step>" and not what a chare's construction is called.
+[[nodiscard]] bool is_of_runtime(std::string_view compiler_name);
+
 /// A function's or member function's name without the compiler's decoration: "Block::step".
 [[nodiscard]] std::string plain_name(std::string_view compiler_name);
 

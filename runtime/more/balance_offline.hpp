@@ -6,6 +6,8 @@
 //     balance::read_lb_datafiles   the phases of saved snapshots
 //     balance::make_strategy       a strategy by name, or the user's own, with the rules of a run:
 //                                  elements that may not move, and that have no room, stay
+//     balance::register_strategy   adds the user's own to those with a name
+//     balance::load_strategy_library   the same from a shared library
 //     balance::measure             imbalance, moves and traffic of an assignment
 //
 // Nothing here needs a machine; each function may be called on any thread.

@@ -38,9 +38,16 @@ void Meter::watch_leaves() {
   watched_->measuring().watch()->leaves();
 }
 
+bool Meter::is_balanced(const LoadRecord* record) {
+  return record != nullptr && record->of_pe != nullptr;
+}
+
 std::uint64_t Meter::pass() {
   const std::uint64_t at = now(), spent = at - since_;
-  if (scope_.record != nullptr) scope_.record->spend(scope_.action, spent);
+  if (scope_.record != nullptr) {
+    scope_.record->spend(scope_.action, spent);
+    in_records_ += spent;
+  }
   if (spent > longest_ticks_) {  // also of what is no element's
     longest_ticks_ = spent;
     longest_ = scope_;
@@ -94,6 +101,8 @@ void Meter::end_quantum() {
   if (longest_.record == nullptr) return;
   const std::uint64_t back = std::min(ticks(stolen), longest_ticks_);
   LoadRecord& record = *longest_.record;
+  in_records_ -= std::min(back, in_records_);
+  record.in_run -= std::min(back, record.in_run);
   record.ticks -= std::min(back, record.ticks);
   if (record.of_pe != nullptr) *record.of_pe -= std::min(back, *record.of_pe);
   for (LoadRecord::MethodCost& entry : record.entries)

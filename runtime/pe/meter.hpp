@@ -70,12 +70,12 @@ class Meter {
     if (at - quantum_began_ > quantum_ticks_) [[unlikely]]
       quantum_passes(at);  // a step may be long: a broadcast to all elements is one
     const Scope ended = std::exchange(scope_, outer);
-    if (at >= alarm_at_ && ended.record != nullptr) [[unlikely]]
+    if (at >= alarm_at_ && is_balanced(ended.record)) [[unlikely]]
       ring(at);
   }
   /// True if the sizes of sent messages are to be measured, by packing them, for the running
   /// record.
-  [[nodiscard]] bool weighs_messages() const { return scope_.record != nullptr; }
+  [[nodiscard]] bool weighs_messages() const { return is_balanced(scope_.record); }
   /// The running element sends a payload to another element.
   void sent(const ElementKey& to, std::uint64_t bytes);
   /// The record ends or leaves this PE, with a balancer or without: after a restart it may have
@@ -103,6 +103,10 @@ class Meter {
 
   /// Ticks in steps that ran a message, without stolen time.
   [[nodiscard]] std::uint64_t busy() const { return busy_; }
+  /// The same with the step that runs now; called in a step.
+  [[nodiscard]] std::uint64_t busy_until_now() const { return busy_ + (now() - step_began_); }
+  /// Ticks in scopes with a record.
+  [[nodiscard]] std::uint64_t in_records() const { return in_records_; }
   /// Seconds since the meter was made.
   [[nodiscard]] double age() const { return seconds(now() - made_); }
   [[nodiscard]] std::uint64_t made() const { return made_; }
@@ -114,6 +118,8 @@ class Meter {
   void remove_alarms(const void* owner);
 
  private:
+  /// True for the record of an element that a balancer watches.
+  [[nodiscard]] static bool is_balanced(const LoadRecord* record);
   void tell(std::uint64_t at) const;
   void watch_enters(const Action* action);
   void watch_leaves();
@@ -134,6 +140,7 @@ class Meter {
   std::uint64_t since_ = 0;  // the last change of scope
   std::uint64_t step_began_ = 0;
   std::uint64_t busy_ = 0;
+  std::uint64_t in_records_ = 0;
 
   // The quantum: its start, the CPU time at its start, and its longest call.
   const std::uint64_t quantum_ticks_, gap_ticks_;

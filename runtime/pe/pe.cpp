@@ -180,7 +180,7 @@ void Pe::run_traced(Envelope* message) {
   trace.begins();
   run(message);
   if (meter.entered() != nullptr) action = meter.entered();
-  trace.ran(action, begin, meter.now(), source, number);
+  trace.ran(action->id(), begin, meter.now(), source, number);
 }
 
 void Pe::exception(const char* what, int exit_code) {

@@ -32,6 +32,10 @@ struct ExitAsked {
 struct Stop {
   int signal = 0;
 };
+struct Stopped {
+  int code = 0;
+  Runtime::Records records;
+};
 struct Nothing {
   std::uint8_t none = 0;
 };
@@ -48,8 +52,8 @@ void stop_arrives(Pe& pe, Stop&& stop) {
 void thaw_arrives(Pe& pe, Nothing&& /*nothing*/) {
   pe.timers().thaw();
 }
-void stopped_arrives(Pe& pe, Code&& code) {
-  pe.runtime().on_stopped(pe, code.value);
+void stopped_arrives(Pe& pe, Stopped&& stopped) {
+  pe.runtime().on_stopped(pe, stopped.code, std::move(stopped.records));
 }
 void leave_arrives(Pe& pe, Code&& code) {
   pe.runtime().on_leave(code.value);
@@ -61,7 +65,8 @@ void census_arrives(Pe& pe, Runtime::Census&& census) {
   pe.runtime().on_census(pe, std::move(census));
 }
 
-constexpr std::size_t most_trace_records = 1'000'000;  // of each kind per PE: about 60 MB
+// Of each kind per PE, about 60 MB, and of all PEs, which process 0 keeps at the end.
+constexpr std::size_t most_trace_records = 1'000'000, most_of_job = 64'000'000;
 constexpr std::size_t reserve_bytes = 1U << 20U;
 
 template <auto Handler, class Payload>
@@ -96,8 +101,13 @@ Runtime::Runtime(Machine& machine, const RuntimeOptions& options, const ElementW
                                         pools_.emplace_back(), options.seed, options.messages));
     Pe& pe = *pes_.back();
     pe.forced_migrations().set(options.migration_chance, options.mover);
-    if (options.statistics) pe.measuring().start_meter();
-    if (!options.trace.empty()) pe.measuring().start_trace(most_trace_records);
+    if (options.statistics) {
+      pe.measuring().start_meter();
+      pe.measuring().start_elements();
+    }
+    if (!options.trace.empty())
+      pe.measuring().start_trace(
+          std::min(most_trace_records, most_of_job / static_cast<std::size_t>(machine.n_pes())));
     if (options.hang_report.count() != 0) pe.measuring().start_watch();
     if (options.audit) pe.measuring().start_audit(options.fault);
   }
@@ -112,7 +122,8 @@ void Runtime::watch(ProcessMonitor& monitor) {
 }
 
 void Runtime::prepare() const {
-  if (!options_.trace.empty()) require_writable_trace(trace_path());
+  if (!options_.trace.empty() && machine_.process().value == 0)
+    require_writable_trace(options_.trace);
 }
 
 int Runtime::refuse_job(std::string_view why) {
@@ -128,11 +139,15 @@ int Runtime::run() {
     std::uint64_t value;
     std::string_view differs;
   };
-  const std::array<Common, 4> common{{
+  const std::array<Common, 6> common{{
       {Registry::fingerprint(),
        "the processes of this job run different programs: start the same build everywhere"},
       {options_.audit ? 1U : 0U,
        "only some processes of this job were given --audit: give it to all"},
+      {options_.trace.empty() ? 0U : 1U,
+       "only some processes of this job were given --trace: give it to all"},
+      {options_.statistics ? 1U : 0U,
+       "only some processes of this job were given --stats: give it to all"},
       {options_.monitor ? 1U : 0U,
        "only some processes of this job were given --monitor: give it to all"},
       {options_.messages.memory_bytes,
@@ -146,9 +161,14 @@ int Runtime::run() {
     for (const Common& one : common)
       if (!machine_.agree(one.value)) return refuse_job(one.differs);
   machine_.run(*this);
-  write_traces();
+  write_trace_of_job();
   if (const std::string left_out = machine_.left_out(); !left_out.empty())
     error_line("tessera: " + left_out);
+  if (options_.statistics && !records_.empty()) {
+    std::vector<PeLoad> loads;
+    for (Records& one : records_) loads.push_back(std::move(one.load));
+    error_line("stats: " + tess::describe(summarise(loads)));
+  }
   if (left_) return exit_code_;
   // Only a simulated machine can notice that no message is under way any more.
   const std::string gave_up = machine_.gave_up();
@@ -172,7 +192,7 @@ void Runtime::start(PeId id) {
 }
 
 void Runtime::run_main(Pe& pe) {
-  const WatchedMain watched(pe.measuring().watch(), pe.running());
+  const MainScope scope(pe);
   main_();
 }
 
@@ -202,23 +222,25 @@ void Runtime::print_statistics(PeId id) {
       std::max(0.0, of.meter()->age() - busy), chares, s.forwards, s.migrations, s.dead_letters));
 }
 
-void Runtime::write_traces() {
-  if (options_.trace.empty()) return;
+void Runtime::write_trace_of_job() {
+  if (options_.trace.empty() || machine_.process().value != 0) return;
+  if (records_.empty())  // the simulated machine gave up
+    for (const auto& pe : pes_) records_.push_back(records_of(*pe));
+  std::sort(records_.begin(), records_.end(),
+            [](const Records& a, const Records& b) { return a.pe < b.pe; });
   std::vector<TraceOfPe> all;
-  for (const auto& pe : pes_)
-    all.push_back({pe->id(), pe->measuring().trace(), pe->meter()->seconds(1'000'000'000) * 1e-9,
-                   pes_.front()->meter()->made(), 1e-6 + 2 * seconds(machine_.message_cost())});
-  write_trace(trace_path(), machine_.process(), all);
-  if (machine_.n_pes_here() != machine_.n_pes()) return;  // the path goes through other processes
+  for (const Records& of : records_) {
+    const bool is_here = of.pe.value < machine_.n_pes_here();
+    all.push_back({of.pe, is_here ? pe(of.pe).measuring().trace() : &of.trace, of.seconds_per_tick,
+                   of.origin, 1e-6 + 2 * seconds(machine_.message_cost()),
+                   machine_.process_of(of.pe), 0});
+  }
+  if (machine_.n_pes_here() != machine_.n_pes()) align_clocks(all);
+  write_trace(options_.trace, all);
   const bool complete = std::all_of(all.begin(), all.end(),
                                     [](const TraceOfPe& pe) { return pe.trace->n_dropped() == 0; });
   error_line(complete ? "tessera: " + detail::describe(critical_path(all))
                       : "tessera: the critical path is not known: the trace is not complete");
-}
-
-std::string Runtime::trace_path() const {
-  const std::int32_t process = machine_.process().value;
-  return process == 0 ? options_.trace : text(options_.trace, ".", process);
 }
 
 void Runtime::error_line(const std::string& line) {
@@ -291,11 +313,24 @@ void Runtime::on_stop(Pe& pe, int signal) {
     service_->ends_by_signal(signal, pe.id(), census_of_running(pe));
   pe.stop_user_code();
   const int asked = asked_[static_cast<std::size_t>(pe.id().value - first_.value)];
-  send_uncounted<&stopped_arrives>(pe, PeId{0}, Code{std::max(asked, 0)});
+  send_uncounted<&stopped_arrives>(pe, PeId{0}, Stopped{std::max(asked, 0), records_of(pe)});
 }
 
-void Runtime::on_stopped(Pe& pe, int code) {
+Runtime::Records Runtime::records_of(Pe& pe) const {
+  Records records;
+  records.pe = pe.id();
+  if (options_.statistics) records.load = pe.measuring().load();
+  if (pe.measuring().trace() == nullptr) return records;
+  // By the process, whose PEs share a clock.
+  records.origin = pes_.front()->meter()->made();
+  records.seconds_per_tick = pe.meter()->seconds(1'000'000'000) * 1e-9;
+  if (machine_.process().value != 0) records.trace = std::move(*pe.measuring().trace());
+  return records;
+}
+
+void Runtime::on_stopped(Pe& pe, int code, Records&& records) {
   exit_code_ = std::max(exit_code_.load(), code);
+  records_.push_back(std::move(records));
   if (--n_answers_ != 0) return;
   send_to_each<&leave_arrives>(pe, Code{exit_code_});
   // At once: as soon as another PE of this process receives its message, it stops the process, and

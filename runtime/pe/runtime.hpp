@@ -34,6 +34,8 @@
 
 namespace tess::detail {
 
+struct LoadRecord;
+
 /// "12 s", with three digits.
 [[nodiscard]] std::string seconds_text(double seconds);
 
@@ -43,6 +45,7 @@ struct ElementWords {
   std::string (*key)(const Element& element);   ///< unique in the job: reply_key()
   /// What its describe_state() returns, if it has one: "at step 16".
   std::string (*state)(const Element& element);
+  LoadRecord* (*load)(Element& element);  ///< null: it is not measured
 };
 
 /// The key of an element in reports, from its collection and the hash of its index.
@@ -157,7 +160,15 @@ class Runtime final : public Program {
   void run_main(Pe& pe);
   void on_exit_asked(Pe& pe, int code, int signal);
   void on_stop(Pe& pe, int signal);
-  void on_stopped(Pe& pe, int code);
+  /// What a PE measured, for process 0.
+  struct Records {
+    PeId pe{};
+    PeLoad load;               // with --stats
+    std::uint64_t origin = 0;  // of the trace, in ticks
+    double seconds_per_tick = 0;
+    Trace trace;  // with --trace, of PEs of other processes
+  };
+  void on_stopped(Pe& pe, int code, Records&& records);
   void on_leave(int code);
   void on_census_asked(Pe& pe);
   void on_census(Pe& pe, Census&& census);
@@ -171,8 +182,8 @@ class Runtime final : public Program {
   /// Prints the result of the audit of a quiescent run; false if it found a difference.
   [[nodiscard]] bool report_audit();
   void print_statistics(PeId id);
-  [[nodiscard]] std::string trace_path() const;
-  void write_traces();
+  [[nodiscard]] Records records_of(Pe& pe) const;
+  void write_trace_of_job();
 
   Machine& machine_;
   ProcessService* service_ = nullptr;
@@ -194,6 +205,7 @@ class Runtime final : public Program {
   bool stopping_ = false;
   bool takes_census_ = false;
   std::int32_t n_answers_ = 0;
+  std::vector<Records> records_;     // at the end, of each PE
   std::uint64_t n_sent_by_all_ = 0;  // messages of epoch 0, when it was found to be done
   Census census_;
   std::map<CollectionId, std::int32_t> empty_on_;          // number of PEs per collection

@@ -71,9 +71,24 @@ once "error: "
 # What one process alone cannot do ends the others.
 ends 2 "--monitor 192.0.2.7:0" -n 2 "$job" exit --pes 1 --monitor 192.0.2.7:0 --monitor-token t
 once "error: "
-mkdir "$scratch/trace.1"
-ends 2 "trace.1" -n 2 "$job" exit --pes 1 --trace "$scratch/trace"
+mkdir "$scratch/trace"
+ends 2 "trace" -n 2 "$job" exit --pes 1 --trace "$scratch/trace"
 once "error: "
+for option in --stats "--trace $scratch/a.json"; do
+  ends 2 "only some processes of this job were given ${option%% *}" -n 1 "$job" exit --pes 1 $option : -n 1 "$job" exit --pes 1
+  once "error: "
+done
+# One trace of all processes, and its critical path; one sentence on what limits the run.
+ends 7 "tessera: critical path: [1-9]" -n 2 "$job" move --pes 2 --stats --trace "$scratch/all.json"
+once "stats: PEs wait .* of the time"
+traced=$(python3 -c '
+import json, sys
+events = [e for e in json.load(open(sys.argv[1]))["traceEvents"] if e["ph"] == "X"]
+sends = {e["bind_id"]: e for e in events if "flow_out" in e}
+over = [(sends[e["bind_id"]], e) for e in events if "flow_in" in e and sends[e["bind_id"]]["pid"] != e["pid"]]
+print(sorted({(e["pid"], e["tid"]) for e in events}), len(over) > 0, all(a["ts"] <= b["ts"] for a, b in over))
+' "$scratch/all.json")
+if [[ $traced == "[(0, 0), (0, 1), (1, 2), (1, 3)] True True" ]] && [[ ! -e $scratch/all.json.1 ]]; then pass; else fail "trace of two processes: $traced"; fi
 # --pes on one of them: the others take that number, or say that theirs differs.
 ends 5 "" -n 1 "$job" exit --pes 1 : -n 1 "$job" exit
 ends 2 "different numbers of PEs" -n 1 "$job" exit --pes 64 : -n 1 "$job" exit

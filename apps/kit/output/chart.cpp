@@ -25,11 +25,20 @@ bool can_be_drawn(const Chart& chart, const Point& p) {
          (!chart.y_log || p.y > 0);
 }
 
+bool has_bars(const Series& series) {
+  return std::ranges::any_of(series.points, [](const Point& p) { return p.low < p.high; });
+}
+
 std::string csv(const Chart& chart) {
-  std::string out = "series,x,y\n";
+  const bool bars = std::ranges::any_of(chart.series, &has_bars);
+  std::string out = bars ? "series,x,y,low,high\n" : "series,x,y\n";
   for (const Series& series : chart.series) {
     const std::string name = csv_field(series.name);
-    for (const Point& p : series.points) fmt::format_to(Text(out), "{},{},{}\n", name, p.x, p.y);
+    for (const Point& p : series.points) {
+      fmt::format_to(Text(out), "{},{},{}", name, p.x, p.y);
+      if (bars) fmt::format_to(Text(out), ",{},{}", p.low, p.high);
+      out += '\n';
+    }
   }
   return out;
 }
@@ -101,9 +110,9 @@ std::string script(const Chart& chart) {
     fmt::format_to(to, "$data{} << END\n", i);
     for (const Point& p : chart.series[i].points) {
       if (can_be_drawn(chart, p))
-        fmt::format_to(to, "{} {}\n", p.x, p.y);
+        fmt::format_to(to, "{} {} {} {}\n", p.x, p.y, p.low, p.high);
       else
-        out += "NaN NaN\n";
+        out += "NaN NaN NaN NaN\n";
     }
     out += "END\n";
   }
@@ -123,6 +132,10 @@ std::string script(const Chart& chart) {
       fmt::format_to(to, " pointtype {} pointsize 0.7", 1 + i % 13);
     if (series.style == Style::lines && i >= colours.size())
       out += " dashtype 4";  // no marks tell it from the line of the same colour
+    if (has_bars(series))
+      fmt::format_to(
+          to, ", $data{} using 1:2:3:4 notitle with yerrorbars linecolor rgb '{}' pointsize 0", i,
+          colours[i % colours.size()]);
   }
   out += '\n';
   return out;

@@ -1,6 +1,6 @@
 // Line charts as SVG, for the reports of programs: error against run time, time against chares
-// per PE. The data is written beside the picture as CSV (series,x,y; NAME.csv for
-// NAME.svg), so that no data is lost without gnuplot.
+// per PE. The data is written beside the picture as CSV (series,x,y, and low,high of error bars;
+// NAME.csv for NAME.svg), so that no data is lost without gnuplot.
 //
 //     kit::Chart chart{.title = "transfer", .x_label = "seconds", .y_label = "L2", .x_log = true};
 //     chart.series.push_back({"kuhn", {{0.1, 1e-2}, {0.8, 2.5e-3}}});
@@ -14,6 +14,7 @@ namespace kit {
 
 struct Point {
   double x = 0, y = 0;
+  double low = y, high = y;  ///< the ends of its error bar
 };
 
 enum class Style { lines_points, lines, points, dashes };

@@ -6,7 +6,7 @@ namespace kit {
 
 std::optional<double> fitted_power(const std::vector<Point>& points) {
   std::vector<Point> logs;
-  for (const auto& [x, y] : points)
+  for (const auto& [x, y, low, high] : points)
     if (std::isfinite(x) && std::isfinite(y) && x > 0 && y > 0)
       logs.push_back({std::log(x), std::log(y)});
   Point mean;

@@ -1,6 +1,7 @@
 // The kind of workload in which the chares are blocks of cells (worker.hpp).
 #include "apps/lb_lab/cells/worker.hpp"
 #include "apps/lb_lab/run/kind.hpp"
+#include "runtime/more/load_measurement.hpp"
 
 #include <fmt/format.h>
 #include <utility>
@@ -24,7 +25,10 @@ tess::Task run_cells(const Experiment& experiment, tess::GroupProxy<Station> sta
     workers = tess::create<Worker>(tess::range(n), stations);
     if (balances(experiment)) balancer = start_balancing(workers, experiment, outcome);
   });
+  tess::LoadMeasurement measurement;
+  co_await measurement.begin();
   co_await tess::epoch([&] { const tess::Task waits = start_and_wait(workers, outcome); });
+  co_await measurement.end(&outcome.loads);
   if (balances(experiment)) outcome.rounds = balancer.history();
 }
 

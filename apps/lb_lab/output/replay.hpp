@@ -2,6 +2,7 @@
 #pragma once
 
 #include "apps/kit/output/json.hpp"
+#include "apps/kit/progress.hpp"
 #include "apps/lb_lab/run/settings.hpp"
 
 #include <string>
@@ -12,7 +13,8 @@ namespace lb_lab {
 /// The rows of a replay and what was left out, as a table and for the JSON.
 struct Replayed {
   std::string table;
-  kit::Json rows, left_out;
+  std::string summary;  ///< the best strategy; limits of the last phase, bytes between its PEs
+  kit::Json rows, left_out, strategies, last_phase;
   std::size_t n_communications = 0;  ///< left out, since they are not from a task to another
 };
 
@@ -24,6 +26,6 @@ struct Replayed {
 /// bytes, time and memory. `all` leaves out, and says so at the end, the strategies
 /// that cannot serve a phase. Throws tess::Error for files and options that cannot be used, and for
 /// a strategy given by its name that cannot serve a phase.
-[[nodiscard]] Replayed replay(const Settings& settings);
+[[nodiscard]] Replayed replay(const Settings& settings, kit::Progress* progress = nullptr);
 
 }  // namespace lb_lab

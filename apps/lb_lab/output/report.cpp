@@ -1,5 +1,6 @@
 #include "apps/lb_lab/output/report.hpp"
 
+#include "apps/kit/limits.hpp"
 #include "apps/kit/output/write_file.hpp"
 #include "apps/lb_lab/run/kind.hpp"
 #include "runtime/balance/strategy.hpp"
@@ -27,6 +28,12 @@ constexpr kit::Column<Row> columns[] = {
     {"seconds_per_iteration", "", nullptr,
      [](R r) -> Json { return r.seconds_total / r.n_iterations; }},
     {"", "ms/iter", "10.3f", [](R r) -> Json { return 1e3 * r.seconds_total / r.n_iterations; }},
+    {"seconds_of_runs", "", nullptr, kit::of<&Row::seconds_of_runs>},
+    {"", "spread %", "8.1f",
+     [](R r) {
+       if (r.seconds_of_runs.size() < 2) return Json();
+       return Json(100 * (std::ranges::max(r.seconds_of_runs) / r.seconds_total - 1));
+     }},
     {"ideal_seconds", "", nullptr, kit::of<&Row::ideal_seconds>},
     {"", "ideal %", "7.1f", [](R r) -> Json { return 100 * r.ideal_seconds / r.seconds_total; }},
     {"imbalance_before", "before", "7.3f", kit::of<&Row::imbalance_before>},
@@ -36,8 +43,11 @@ constexpr kit::Column<Row> columns[] = {
     {"", "KiB", "10.0f", [](R r) -> Json { return static_cast<double>(r.moved_bytes) / 1024; }},
     {"balance_seconds", "", nullptr, kit::of<&Row::balance_seconds>},
     {"", "balance ms", "10.3f", [](R r) -> Json { return 1e3 * r.balance_seconds; }},
+    {"", "messages %", "10.1f",
+     [](R r) { return r.limits.runtime < 0 ? Json() : Json(100 * r.limits.runtime); }},
     {"gain", "", nullptr, kit::of<&Row::gain>},
     {"", "gain %", "7.1f", [](R r) -> Json { return 100 * r.gain; }},
+    {"limits", "", nullptr, [](R r) -> Json { return kit::limits_json(r.limits); }},
     {"result_hash", "", nullptr, [](R r) -> Json { return kit::hex(r.answer); }},
     {"imbalance_of_iteration", "", nullptr, [](R r) {
        Json curve = Json::array();
@@ -66,6 +76,10 @@ std::string best_text(const Sweep& sweep) {
     const Row& row = best_of(sweep, workload);
     out += fmt::format("best of {}: {} chares per PE under {}, {:.4f} s, gain {:.1f} % over none\n",
                        workload, row.per_pe, row.strategy, row.seconds_total, 100 * row.gain);
+    for (const Row& other : sweep.rows)  // none, and the best itself
+      if (other.workload == workload && other.per_pe == row.per_pe &&
+          (other.strategy == "none" || other.strategy == row.strategy))
+        out += fmt::format("  {}: {}\n", other.strategy, tess::describe(other.limits));
   }
   return out;
 }
@@ -110,7 +124,7 @@ std::string explain_text(const Settings& s, std::int32_t n_pes) {
                         s.period)
           : fmt::format(", a barrier every {} iterations{}\n", s.period,
                         s.when == "automatic" ? ", a round where it gains more than it costs" : "");
-  out += "none: no balancer is made, no load measured, no barrier\n";
+  out += "none: no balancer is made, no barrier; loads are measured for its limits only\n";
   if (s.plot.empty()) out += "left out: intervals for timelines (--plot)\n";
   if (s.snapshots.empty()) out += "left out: snapshots for strategies (--save-snapshot)\n";
   return out;

@@ -12,7 +12,7 @@ namespace lb_lab {
 [[nodiscard]] const kit::Rows<Row>& report();
 /// The fastest row of a workload.
 [[nodiscard]] const Row& best_of(const Sweep& sweep, const std::string& workload);
-/// The best cut and strategy of each workload, a line each.
+/// The best cut and strategy of each workload, a line each, and what limits it, and none there.
 [[nodiscard]] std::string best_text(const Sweep& sweep);
 /// Gives the same as rows of the JSON.
 [[nodiscard]] kit::Json best_json(const Sweep& sweep);

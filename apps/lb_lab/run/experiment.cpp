@@ -28,6 +28,8 @@ tess::Task run(const Experiment& experiment, Outcome& outcome) {
   co_await tess::epoch([&] { stations = tess::create<Station>(tess::each_pe, experiment.plan); });
   co_await workload_of(experiment.plan.problem).kind->run(experiment, stations, outcome);
   outcome.records = co_await stations.reduce<&Station::give_record>();
+  for (std::size_t pe = 0; pe < outcome.loads.size(); ++pe)
+    outcome.loads[pe].speed = speed_of(experiment.plan, pe);
 }
 
 double imbalance(const Outcome& outcome, const Plan& plan, std::int32_t first, std::int32_t last) {

@@ -5,6 +5,7 @@
 #include "runtime/balance.hpp"
 #include "runtime/balance/datafile/lb_datafile.hpp"
 #include "runtime/balance_options.hpp"
+#include "runtime/core/load_summary.hpp"
 #include "runtime/task.hpp"
 
 #include <cstdint>
@@ -16,15 +17,17 @@ enum class Keep : std::uint8_t { nothing, snapshots };
 
 struct Experiment {
   Plan plan;
-  tess::BalanceOptions balance;  ///< strategy none: no balancer is made, nothing is measured
+  tess::BalanceOptions balance;  ///< strategy none: no balancer is made
   Keep keep = Keep::nothing;
 };
 
 struct Outcome {
   double began = 0;    ///< on PE 0's clock
   double seconds = 0;  ///< from the first message to the answer
+  std::vector<double> seconds_of_runs;
   std::uint64_t answer = 0;
   std::vector<PeRecord> records;  ///< of each PE
+  std::vector<tess::PeLoad> loads;
   std::vector<tess::balance::Round> rounds;
   std::vector<tess::balance::Phase> phases;  ///< snapshots given to the strategy, if they are kept
 };

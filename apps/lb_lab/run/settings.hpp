@@ -27,7 +27,7 @@ struct Settings {
   std::uint64_t cell_bytes = 1024;
   std::uint64_t message_bytes = 1024;
   std::int32_t repeat = 1;  ///< runs of each; the fastest counts
-  std::string plot, snapshots;
+  std::string library, plot, snapshots;
   std::string snapshot_format = "json.br";  ///< or json: not compressed
   std::vector<std::string> replay;          ///< files; not empty: no run
   std::int32_t replay_pes = 0;              ///< 0: as in the files

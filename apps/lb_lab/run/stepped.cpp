@@ -1,5 +1,7 @@
 #include "apps/lb_lab/run/stepped.hpp"
 
+#include "runtime/more/load_measurement.hpp"
+
 namespace lb_lab {
 
 tess::Task Stepped::run() {
@@ -9,6 +11,8 @@ tess::Task Stepped::run() {
   co_await tess::epoch([&] { balancer = create(); });
   co_await begin();
   co_await tess::epoch([&] { stations_.broadcast<&Station::first_begins>(); });
+  tess::LoadMeasurement measurement;
+  co_await measurement.begin();
 
   outcome_.began = tess::seconds(tess::now());
   for (std::int32_t t = 0; t < n; ++t) {
@@ -20,6 +24,7 @@ tess::Task Stepped::run() {
     co_await tess::epoch([&] { stations_.broadcast<&Station::round_ends>(phase); });
   }
   outcome_.seconds = tess::seconds(tess::now()) - outcome_.began;
+  co_await measurement.end(&outcome_.loads);
 
   co_await end();
   outcome_.answer = co_await stations_.reduce<&Station::give_answer>();

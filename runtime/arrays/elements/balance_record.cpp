@@ -32,11 +32,13 @@ void BalanceRecord::pack(Writer& ar, const Meter& meter) const {
   std::vector<PackedTraffic> traffic;
   for (const auto& [to, sent] : load.sent.entries()) traffic.push_back({to, sent});
   ar(sync, past, size_bytes);
-  ar(meter.seconds(load.ticks), load.speed, load.since, entries, traffic);
+  ar(meter.seconds(load.in_run), meter.seconds(load.ticks), load.speed, load.since, entries,
+     traffic);
 }
 
 void BalanceRecord::unpack(Reader& ar, const Meter& meter) {
   ar(sync, past, size_bytes);
+  load.in_run = meter.ticks(ar.take<double>());
   load.ticks = meter.ticks(ar.take<double>());
   ar(load.speed, load.since);
   for (const PackedEntry& entry : ar.take<std::vector<PackedEntry>>())

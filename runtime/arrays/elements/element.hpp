@@ -29,6 +29,7 @@ class BalancedElements;
 class Collection;
 class Sections;
 struct BalanceRecord;
+struct LoadRecord;
 
 /// Frees a record, which the meter of this PE forgets; not inline, since most elements have none.
 struct EndRecord {
@@ -91,7 +92,7 @@ class TessElement {
   }
 
   Collection* collection_ = nullptr;
-  std::unique_ptr<BalanceRecord, EndRecord> balance_;  // if a balancer watches its array
+  std::unique_ptr<BalanceRecord, EndRecord> balance_;  // if its load is measured
   ElementState state_;
   std::uint32_t slot_ = 0;              // slot in the collection's list
   std::uint32_t n_suspended_ = 0;       // waiting coroutines, running handlers, and n_held_
@@ -110,5 +111,7 @@ using Element = TessElement;
 [[nodiscard]] std::string element_key(const Element& element);
 /// The result of its describe_state(), if it has one.
 [[nodiscard]] std::string element_state(const Element& element);
+/// Its measured load; null if it is not measured.
+[[nodiscard]] LoadRecord* element_load(Element& element);
 
 }  // namespace tess::detail

@@ -89,7 +89,7 @@ std::uint64_t ArrayOf<Index>::drop_arrival(Pe& pe, Envelope& envelope) {
   auto& arrival = static_cast<Arrival<Index>&>(envelope);
   const Counted counted(pe.completion(), arrival.epoch);
   if (arrival.element != nullptr) {
-    BalancedElements::end_wait(pe, *arrival.element);
+    BalancedElements::ends(pe, *arrival.element);
   } else {
     Reader ar(std::span<const std::byte>(arrival.state.data(), arrival.state.size()));
     (void)ar.template take<Index>();
@@ -221,7 +221,7 @@ void ArrayOf<Index>::destroy_here(Indexed& element) {
   const std::uint32_t next = element.state_.next_reduction;
   unlist(element);
   ++n_departures_;
-  BalancedElements::end_wait(pe_, element);
+  BalancedElements::ends(pe_, element);
   end_memberships(element);
   balanced().destroyed(element);
   // The destructor may send to its own index or insert there again.

@@ -40,7 +40,7 @@ std::string name_of(const BalanceOptions& options, bool is_users) {
 Coordinator::Coordinator(BalanceOptions options, Strategy users)
     : options_(std::move(options)),
       name_(name_of(options_, users != nullptr)),
-      strategy_(users ? make_strategy(std::move(users))
+      strategy_(users ? make_strategy(std::move(users), name_)
                       : make_strategy(options_.strategy, options_.seed)) {
   const Prediction prediction = parse_prediction(options_.prediction);
   if (prediction != Prediction::last) predictor_.emplace(prediction, options_.window);

@@ -33,11 +33,12 @@ struct Entry {
   std::string name;
   Assignment (*run)(const Snapshot&, std::uint64_t seed);
   Needs needs = Needs::nothing;
+  Strategy users{};  ///< of register_strategy(), in place of `run`
 };
 
 /// The table of strategies; an entry without a seed ignores it.
-const std::vector<Entry>& entries() {
-  static const std::vector<Entry> all = {
+std::vector<Entry>& entries() {
+  static std::vector<Entry> all = {
       {"none", [](const Snapshot& s, std::uint64_t) { return none(s); }},
       {"rotate", [](const Snapshot& s, std::uint64_t) { return rotate(s); }},
       {"random", [](const Snapshot& s, std::uint64_t seed) { return random(s, seed); }},
@@ -55,6 +56,15 @@ const std::vector<Entry>& entries() {
   return all;
 }
 
+std::vector<std::string>& names() {
+  static std::vector<std::string> all = [] {
+    std::vector<std::string> result;
+    for (const Entry& entry : entries()) result.push_back(entry.name);
+    return result;
+  }();
+  return all;
+}
+
 Needs needs_of(std::string_view name) {
   const auto entry = std::ranges::find(entries(), name, &Entry::name);
   return entry == entries().end() ? Needs::nothing : entry->needs;
@@ -62,22 +72,38 @@ Needs needs_of(std::string_view name) {
 
 }  // namespace
 
+void register_strategy(const std::string& name, Strategy strategy, std::uint64_t version) {
+  const auto refuse = [&name](const auto&... why) {
+    fail(ErrorCode::bad_argument, "register_strategy: ", name, ": ", why...);
+  };
+  if (version != snapshot_version)
+    refuse("it was compiled against another version of Tessera, whose snapshots differ (",
+           fmt::format("{:x}, here {:x}", version, snapshot_version),
+           "); compile it with the headers of this one");
+  constexpr std::string_view fitting =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
+  if (name.empty() || name.find_first_not_of(fitting) != std::string::npos || name == "all")
+    refuse("is no name of a strategy; use letters, digits, '_' and '-'");
+  if (std::ranges::count(strategy_names(), name) > 0)
+    refuse("there is a strategy of this name; choose another name");
+  if (!strategy) refuse("its function is empty");
+  entries().push_back({name, nullptr, Needs::nothing, std::move(strategy)});
+  names().push_back(name);
+}
+
 const std::vector<std::string>& strategy_names() {
-  static const std::vector<std::string> names = [] {
-    std::vector<std::string> result;
-    for (const Entry& entry : entries()) result.push_back(entry.name);
-    return result;
-  }();
-  return names;
+  return names();
 }
 
 Strategy make_strategy(std::string_view name, std::uint64_t seed) {
-  for (const Entry& entry : entries())
-    if (entry.name == name)
-      return [run = entry.run, seed](const Snapshot& s) {
-        if (n_known_loads(s) == s.elements.size()) return run(s, seed);
-        return run(with_unknown_pinned(s), seed);
-      };
+  for (const Entry& entry : entries()) {
+    if (entry.name != name) continue;
+    if (entry.users) return make_strategy(entry.users, entry.name);
+    return [run = entry.run, seed](const Snapshot& s) {
+      if (n_known_loads(s) == s.elements.size()) return run(s, seed);
+      return run(with_unknown_pinned(s), seed);
+    };
+  }
   const std::string names = fmt::format("{}", fmt::join(strategy_names(), ", "));
   fail(ErrorCode::bad_argument,
        fmt::format("no balance strategy '{}'; choose one of {}", name, names),
@@ -100,9 +126,9 @@ std::string obstacle(std::string_view name, const Snapshot& s) {
   return {};
 }
 
-Strategy make_strategy(Strategy users) {
-  return [users = std::move(users)](const Snapshot& s) {
-    return honour(with_unknown_pinned(s), users(s));
+Strategy make_strategy(Strategy users, std::string name) {
+  return [users = std::move(users), name = std::move(name)](const Snapshot& s) {
+    return honour(with_unknown_pinned(s), users(s), name);
   };
 }
 

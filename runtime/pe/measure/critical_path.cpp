@@ -45,17 +45,14 @@ class Walk {
   [[nodiscard]] const Trace::Slice& slice(At at) const {
     return pes_[at.pe].trace->slices()[at.slice];
   }
-  [[nodiscard]] double time(At at, std::uint64_t ticks) const {
-    const TraceOfPe& of = pes_[at.pe];
-    return of.seconds_per_tick * (static_cast<double>(ticks) - static_cast<double>(of.origin));
-  }
+  [[nodiscard]] double time(At at, std::uint64_t ticks) const { return pes_[at.pe].seconds(ticks); }
   [[nodiscard]] std::optional<At> last() const {
     std::optional<At> best;
     double end = 0;
     for (std::size_t pe = 0; pe < pes_.size(); ++pe) {
       const auto& slices = pes_[pe].trace->slices();
       const auto users = std::find_if(slices.rbegin(), slices.rend(), [](const Trace::Slice& one) {
-        return one.action->traffic == Traffic::user;
+        return static_cast<const Action&>(Registry::at(one.action)).traffic == Traffic::user;
       });
       if (users == slices.rend()) continue;
       const At at{pe, static_cast<std::size_t>(slices.rend() - users) - 1};
@@ -84,16 +81,13 @@ class Walk {
   }
   /// The slice in which a message was sent, and when.
   [[nodiscard]] Cause sender_of(const Trace::Slice& of) const {
-    if (of.number == 0) return {};
-    const auto source = std::find_if(pes_.begin(), pes_.end(),
-                                     [&](const TraceOfPe& pe) { return pe.pe == of.source; });
-    if (source == pes_.end()) return {};
-    const auto& sends = source->trace->sends();
-    if (of.number > sends.size() || sends[of.number - 1].number != of.number) return {};
-    const Trace::Send& send = sends[of.number - 1];
-    if (send.slice == Trace::no_slice || send.slice >= source->trace->slices().size()) return {};
-    const At sender{static_cast<std::size_t>(source - pes_.begin()), send.slice};
-    return {sender, time(sender, std::min(send.at, slice(sender).end))};
+    const auto source = static_cast<std::size_t>(of.source.value);
+    if (source >= pes_.size()) return {};
+    const Trace& trace = *pes_[source].trace;
+    const Trace::Send* const send = trace.send_of(of.number);
+    if (send == nullptr || send->slice >= trace.slices().size()) return {};
+    const At sender{source, send->slice};
+    return {sender, time(sender, std::min(send->at, slice(sender).end))};
   }
 
   const std::vector<TraceOfPe>& pes_;
@@ -121,7 +115,7 @@ std::string describe(const CriticalPath& path, std::size_t n_longest) {
   std::map<std::string, Sum> by_action;
   for (const auto& link : path.links) {
     if (link.waits) continue;
-    Sum& sum = by_action[plain_name(link.action->name())];
+    Sum& sum = by_action[trace_name(link.action)];
     sum.seconds += link.seconds;
     ++sum.n;
   }
@@ -145,10 +139,9 @@ std::string describe(const CriticalPath& path, std::size_t n_longest) {
   if (n > 0) out += "\n  its longest links:";
   for (std::size_t i = 0; i < n; ++i) {
     const auto& link = path.links[order[i]];
-    out += fmt::format(
-        "\n    {:>13} {} on PE {}, at {}", milliseconds(link.seconds),
-        (link.waits ? "until the beginning of " : "in ") + plain_name(link.action->name()),
-        link.pe.value, milliseconds(link.begin));
+    out += fmt::format("\n    {:>13} {} on PE {}, at {}", milliseconds(link.seconds),
+                       (link.waits ? "until the beginning of " : "in ") + trace_name(link.action),
+                       link.pe.value, milliseconds(link.begin));
   }
   return out;
 }

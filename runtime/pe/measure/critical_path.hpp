@@ -22,7 +22,7 @@ namespace tess::detail {
 struct CriticalPath {
   /// A part of the path: an entry method that ran, or the wait for it to begin.
   struct Link {
-    const Action* action = nullptr;
+    std::uint32_t action = 0;
     PeId pe{};
     double begin = 0, seconds = 0;
     bool waits = false;
@@ -32,11 +32,10 @@ struct CriticalPath {
   double waiting = 0;       ///< seconds between a cause and the beginning of what it led to
 };
 
-/// The PEs of a whole run: all of one process. If a cause is not among them (it was sent by another
-/// process), or records are missing, the path begins there.
+/// All PEs of a run, in order, with aligned clocks. Where records are missing the path begins.
 [[nodiscard]] CriticalPath critical_path(const std::vector<TraceOfPe>& pes);
 
-/// What the path consists of, by entry method, and its longest links.
+/// What the path consists of, by entry method and the runtime, and its longest links.
 [[nodiscard]] std::string describe(const CriticalPath& path, std::size_t n_longest = 10);
 
 }  // namespace tess::detail

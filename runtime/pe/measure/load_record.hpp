@@ -52,11 +52,14 @@ struct LoadRecord {
     phase,  ///< since the beginning of the phase
   };
 
-  std::uint64_t ticks = 0;          ///< ticks of the PE's meter, at `speed`
+  std::uint64_t in_run = 0;         ///< ticks since the run, or its measurement, began
+  std::uint64_t ticks = 0;          ///< ticks of the PE's meter in this phase, at `speed`
   std::vector<MethodCost> entries;  ///< by entry method
   SentTable sent;
-  std::uint64_t* of_pe = nullptr;  ///< the PE's sum of the ticks of all such elements
-  double speed = 1;                ///< relative speed of the PE that measures
+  /// The PE's sum of the ticks of all such elements; null: no balancer watches, and only `in_run`
+  /// counts.
+  std::uint64_t* of_pe = nullptr;
+  double speed = 1;  ///< relative speed of the PE that measures
   Since since = Since::somewhere;
 
   /// True if `ticks` is the whole cost of the element in this phase. A new element that has not run
@@ -66,8 +69,10 @@ struct LoadRecord {
   }
 
   void spend(const Action* action, std::uint64_t spent) {
+    in_run += spent;
+    if (of_pe == nullptr) return;
     ticks += spent;
-    if (of_pe != nullptr) *of_pe += spent;
+    *of_pe += spent;
     for (MethodCost& entry : entries) {
       if (entry.action != action) continue;
       entry.ticks += spent;

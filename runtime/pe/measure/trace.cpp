@@ -2,11 +2,17 @@
 
 #include "runtime/core/error.hpp"
 #include "runtime/core/escape.hpp"
+#include "runtime/core/registry.hpp"
 #include "runtime/wire/messages/envelope.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cstdio>
 #include <fmt/core.h>
+#include <limits>
+#include <map>
 #include <memory>
+#include <unordered_map>
 #include <utility>
 
 namespace tess::detail {
@@ -19,42 +25,79 @@ std::uint64_t arrow(PeId source, std::uint32_t number) {
   return static_cast<std::uint64_t>(source.value) << 32U | number;
 }
 
+/// The names of actions, each of which is made once.
+class ActionNames {
+ public:
+  [[nodiscard]] const std::string& operator[](std::uint32_t action) {
+    auto& name = names_[action];
+    if (name.empty()) name = trace_name(action);
+    return name;
+  }
+  [[nodiscard]] bool is_users(std::uint32_t action) { return (*this)[action] != of_runtime; }
+  static constexpr const char* of_runtime = "runtime";
+
+ private:
+  std::unordered_map<std::uint32_t, std::string> names_;
+};
+
 class TraceWriter {
  public:
-  TraceWriter(const std::string& path, ProcessId process)
-      : path_(path), process_(process), file_(std::fopen(path.c_str(), "w"), &std::fclose) {
+  TraceWriter(const std::string& path, const std::vector<TraceOfPe>& pes)
+      : path_(path), pes_(pes), file_(std::fopen(path.c_str(), "w"), &std::fclose) {
     if (!file_) fail(ErrorCode::environment, "--trace ", path, ": the file cannot be written");
-    put("{\"displayTimeUnit\":\"ns\",\"traceEvents\":[\n");
-    put(
-        fmt::format("{{\"ph\":\"M\",\"name\":\"process_name\",\"pid\":{},\"args\":{{\"name\":"
-                    "\"process {}\"}}}}",
-                    process_.value, process_.value));
+    put("{\"displayTimeUnit\":\"ns\",\"traceEvents\":[");
+    for (const TraceOfPe& of : pes)
+      for (const Trace::Slice& slice : of.trace->slices())
+        if (names_.is_users(slice.action)) shown_.push_back(arrow(slice.source, slice.number));
+    std::sort(shown_.begin(), shown_.end());
   }
 
+  void write() {
+    for (const TraceOfPe& of : pes_) pe(of);
+    put("\n]}\n");
+    if (std::fflush(file_.get()) != 0)
+      fail(ErrorCode::environment, "--trace ", path_, ": the file cannot be written whole");
+  }
+
+ private:
   void pe(const TraceOfPe& of) {
-    put(
-        fmt::format(",\n{{\"ph\":\"M\",\"name\":\"thread_name\",\"pid\":{},\"tid\":{},\"args\":{{"
-                    "\"name\":\"PE {}\"}}}}",
-                    process_.value, of.pe.value, of.pe.value));
-    for (const Trace::Slice& slice : of.trace->slices()) {
-      const double begin = micros(of, slice.begin);
-      event("X", plain_name(slice.action->name()), of.pe, begin,
-            fmt::format(",\"dur\":{:.3f}", micros(of, slice.end) - begin));
-      if (slice.number != 0)
-        event("f", "message", of.pe, begin,
-              fmt::format(R"(,"bp":"e","cat":"m","id":{})", arrow(slice.source, slice.number)));
+    if (of.process != process_) {
+      process_ = of.process;
+      entry(fmt::format(
+          R"({{"ph":"M","name":"process_name","pid":{0},"args":{{"name":"process {0}"}}}})",
+          process_.value));
+    }
+    entry(fmt::format(
+        R"({{"ph":"M","name":"thread_name","pid":{},"tid":{},"args":{{"name":"PE {}"}}}})",
+        process_.value, of.pe.value, of.pe.value));
+    const std::vector<Trace::Slice>& slices = of.trace->slices();
+    for (std::size_t i = 0; i < slices.size(); ++i) {
+      const Trace::Slice& slice = slices[i];
+      const double begin = of.seconds(slice.begin);
+      if (names_.is_users(slice.action)) {
+        const TraceOfPe* const source = find(slice.source);
+        const bool has_send = source != nullptr && source->trace->send_of(slice.number) != nullptr;
+        span(names_[slice.action], of.pe, begin, of.seconds(slice.end),
+             has_send ? flow("in", slice.source, slice.number) : "");
+        continue;
+      }
+      double end = of.seconds(slice.end);
+      for (; i + 1 < slices.size() && !names_.is_users(slices[i + 1].action) &&
+             of.seconds(slices[i + 1].begin) - end <= of.pause;
+           ++i)
+        end = of.seconds(slices[i + 1].end);
+      span(ActionNames::of_runtime, of.pe, begin, end, "");
     }
     for (const Trace::Send& send : of.trace->sends())
-      event("s", "message", of.pe, micros(of, send.at),
-            fmt::format(R"(,"cat":"m","id":{})", arrow(of.pe, send.number)));
+      if (const double at = of.seconds(send.at);
+          std::binary_search(shown_.begin(), shown_.end(), arrow(of.pe, send.number)))
+        span("send", of.pe, at, at, flow("out", of.pe, send.number));
     for (const Trace::Event& one : of.trace->events()) {
-      const double begin = micros(of, one.begin);
-      if (one.begin == one.end) {
+      const double begin = of.seconds(one.begin);
+      if (one.begin == one.end)
         event("i", one.name, of.pe, begin, R"(,"s":"t")");
-      } else {
-        event("X", one.name, of.pe, begin,
-              fmt::format(",\"dur\":{:.3f}", micros(of, one.end) - begin));
-      }
+      else
+        span(one.name, of.pe, begin, of.seconds(one.end), "");
     }
     if (of.trace->n_dropped() != 0)
       std::fprintf(stderr, "tessera: --trace %s: PE %d had %llu records more than fit\n",
@@ -62,32 +105,66 @@ class TraceWriter {
                    static_cast<unsigned long long>(of.trace->n_dropped()));
   }
 
-  void end() {
-    put("\n]}\n");
-    if (std::fflush(file_.get()) != 0)
-      fail(ErrorCode::environment, "--trace ", path_, ": the file cannot be written whole");
+  [[nodiscard]] const TraceOfPe* find(PeId pe) const {
+    const auto at = static_cast<std::size_t>(pe.value);
+    return at < pes_.size() && pes_[at].pe == pe ? &pes_[at] : nullptr;
   }
-
- private:
-  [[nodiscard]] static double micros(const TraceOfPe& of, std::uint64_t ticks) {
-    return 1e6 * of.seconds_per_tick * static_cast<double>(ticks - of.origin);
+  [[nodiscard]] static std::string flow(const char* direction, PeId source, std::uint32_t number) {
+    return fmt::format(R"(,"bind_id":"0x{:x}","flow_{}":true)", arrow(source, number), direction);
+  }
+  void span(const std::string& name, PeId pe, double begin, double end, const std::string& more) {
+    event("X", name, pe, begin, fmt::format(R"(,"dur":{:.3f}{})", 1e6 * (end - begin), more));
   }
   void event(const char* phase, const std::string& name, PeId pe, double at,
              const std::string& more) {
-    put(fmt::format(",\n{{\"ph\":\"{}\",\"name\":{},\"pid\":{},\"tid\":{},\"ts\":{:.3f}{}}}", phase,
-                    json_string(name), process_.value, pe.value, at, more));
+    entry(fmt::format(R"({{"ph":"{}","name":{},"pid":{},"tid":{},"ts":{:.3f}{}}})", phase,
+                      json_string(name), process_.value, pe.value, 1e6 * at, more));
   }
+  void entry(const std::string& text) { put(std::exchange(comma_, ",\n") + text); }
   void put(const std::string& text) {
     if (std::fwrite(text.data(), 1, text.size(), file_.get()) != text.size())
       fail(ErrorCode::environment, "--trace ", path_, ": the file cannot be written whole");
   }
 
   const std::string path_;
-  const ProcessId process_;
+  const std::vector<TraceOfPe>& pes_;
+  ActionNames names_;
+  std::vector<std::uint64_t> shown_;  // arrows to slices of the user, sorted
+  ProcessId process_{-1};
+  std::string comma_ = "\n";
   std::unique_ptr<std::FILE, int (*)(std::FILE*)> file_;
 };
 
 }  // namespace
+
+std::string trace_name(std::uint32_t action) {
+  const std::string_view name = Registry::at(action).name();
+  if (plain_name(name) == "main_program") return "main program";
+  return is_of_runtime(name) ? ActionNames::of_runtime : plain_name(name);
+}
+
+/// Of each process: the least time from a send to the slice of its message, by the clocks as they
+/// are, from process 0 and to it. The delays cancel out in half their difference.
+void align_clocks(std::vector<TraceOfPe>& pes) {
+  constexpr double none = std::numeric_limits<double>::infinity();
+  std::map<ProcessId, std::array<double, 2>> least;
+  for (const TraceOfPe& to : pes)
+    for (const Trace::Slice& slice : to.trace->slices()) {
+      const auto at = static_cast<std::size_t>(slice.source.value);
+      if (at >= pes.size() || pes[at].process == to.process) continue;
+      const TraceOfPe& from = pes[at];
+      const Trace::Send* const send = from.trace->send_of(slice.number);
+      const bool outwards = from.process == ProcessId{0};
+      if (send == nullptr || (!outwards && to.process != ProcessId{0})) continue;
+      const ProcessId other = outwards ? to.process : from.process;
+      double& shortest = least.try_emplace(other, std::array{none, none}).first->second[outwards];
+      shortest = std::min(shortest, to.seconds(slice.begin) - from.seconds(send->at));
+    }
+  for (TraceOfPe& pe : pes)
+    if (const auto at = least.find(pe.process);
+        at != least.end() && at->second[0] < none && at->second[1] < none)
+      pe.late += (at->second[0] - at->second[1]) / 2;
+}
 
 std::uint32_t Trace::sent(std::uint64_t at) {
   n_sent_ = n_sent_ % most_numbers + 1;
@@ -100,11 +177,11 @@ std::uint32_t Trace::sent(std::uint64_t at) {
   return n_sent_;
 }
 
-void Trace::ran(const Action* action, std::uint64_t begin, std::uint64_t end, PeId source,
+void Trace::ran(std::uint32_t action, std::uint64_t begin, std::uint64_t end, PeId source,
                 std::uint32_t number) {
   in_slice_ = false;
   if (slices_.size() < most_) {
-    slices_.push_back({action, begin, end, source, number});
+    slices_.push_back({begin, end, action, source, number, 0});
   } else {
     ++n_dropped_;
   }
@@ -124,10 +201,8 @@ void require_writable_trace(const std::string& path) {
   if (!file) fail(ErrorCode::environment, "--trace ", path, ": the file cannot be written");
 }
 
-void write_trace(const std::string& path, ProcessId process, const std::vector<TraceOfPe>& pes) {
-  TraceWriter write(path, process);
-  for (const TraceOfPe& pe : pes) write.pe(pe);
-  write.end();
+void write_trace(const std::string& path, const std::vector<TraceOfPe>& pes) {
+  TraceWriter(path, pes).write();
 }
 
 }  // namespace tess::detail

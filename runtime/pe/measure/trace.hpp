@@ -1,21 +1,24 @@
 // The trace of a PE for --trace FILE: one slice per message that ran, with the send that caused it.
-// It is kept in memory up to a limit per PE, and written at the end as JSON for Chrome's tracing
-// page and Perfetto: one track per PE, and an arrow from each send to the slice that it caused.
-// Without a trace the cost is one test of a null pointer per message.
+// It is kept in memory up to a limit per PE, and at the end of the run process 0 gets those of all
+// PEs and writes one file, as JSON for Chrome's tracing page and Perfetto: one track per PE, a slice
+// per message that ran code of the user, and a send of no duration, from which an arrow leads to the
+// slice. Messages of the runtime have slices named "runtime", joined where no pause is between them,
+// and no arrows. So the file has at most two events per message. Without a trace the cost is one
+// test of a null pointer per message.
 #pragma once
 
 #include "runtime/core/ids.hpp"
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
 
 namespace tess::detail {
 
-struct Action;
-
 class Trace {
  public:
+  Trace() = default;
   explicit Trace(std::size_t most_records) : most_(most_records) {}
 
   /// Records the send of a message; returns its number, which the slice will refer to; never 0.
@@ -23,17 +26,19 @@ class Trace {
   /// A slice begins; ran() ends it.
   void begins() { in_slice_ = true; }
   /// Records the run of a message of `source` with the number that it has there (0: none).
-  void ran(const Action* action, std::uint64_t begin, std::uint64_t end, PeId source,
+  /// `action`: the number of the entry method that ran first.
+  void ran(std::uint32_t action, std::uint64_t begin, std::uint64_t end, PeId source,
            std::uint32_t number);
 
   /// Records an event of the program: a span, or a moment if it begins when it ends.
   void event(std::string name, std::uint64_t begin, std::uint64_t end);
 
   struct Slice {
-    const Action* action = nullptr;
     std::uint64_t begin = 0, end = 0;  // in ticks of the PE's meter
+    std::uint32_t action = 0;
     PeId source{};
     std::uint32_t number = 0;
+    std::uint32_t unused = 0;  // without padding it is packed as bytes
   };
   struct Send {
     std::uint64_t at = 0;
@@ -49,11 +54,21 @@ class Trace {
   [[nodiscard]] const std::vector<Event>& events() const { return events_; }
   [[nodiscard]] const std::vector<Slice>& slices() const { return slices_; }
   [[nodiscard]] const std::vector<Send>& sends() const { return sends_; }
+  /// The send of this number; null if it is not among the records.
+  [[nodiscard]] const Send* send_of(std::uint32_t number) const {
+    const std::size_t at = std::size_t{number} - 1;
+    return number != 0 && at < sends_.size() && sends_[at].number == number ? &sends_[at] : nullptr;
+  }
   /// The number of records that did not fit.
   [[nodiscard]] std::uint64_t n_dropped() const { return n_dropped_; }
 
+  template <class Ar>
+  void serialize(Ar& ar) {
+    ar(n_dropped_, slices_, sends_, events_);
+  }
+
  private:
-  const std::size_t most_;
+  std::size_t most_ = 0;
   std::uint32_t n_sent_ = 0;
   bool in_slice_ = false;
   std::uint64_t n_dropped_ = 0;
@@ -69,12 +84,25 @@ struct TraceOfPe {
   double seconds_per_tick = 0;
   std::uint64_t origin = 0;  ///< the reading at time 0
   double pause = 0;  ///< seconds: a longer one between two slices means that the PE was idle
+  ProcessId process{};
+  double late = 0;  ///< seconds that the clock of its process is behind that of process 0
+
+  [[nodiscard]] double seconds(std::uint64_t ticks) const {
+    return seconds_per_tick * (static_cast<double>(ticks) - static_cast<double>(origin)) + late;
+  }
 };
+
+/// Sets `late` of the PEs of other processes, by their messages from and to process 0: in both
+/// directions the fastest takes the same time. All PEs of the run, in order.
+void align_clocks(std::vector<TraceOfPe>& pes);
+
+/// "Block::step" for what the user wrote, "main program", or "runtime".
+[[nodiscard]] std::string trace_name(std::uint32_t action);
 
 /// Throws Error if the file cannot be written. Called before a run, not after it.
 void require_writable_trace(const std::string& path);
 
-/// Writes the records of a process's PEs. Throws Error if the file cannot be written.
-void write_trace(const std::string& path, ProcessId process, const std::vector<TraceOfPe>& pes);
+/// Writes the records of all PEs. Throws Error if the file cannot be written.
+void write_trace(const std::string& path, const std::vector<TraceOfPe>& pes);
 
 }  // namespace tess::detail

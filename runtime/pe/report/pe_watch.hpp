@@ -78,20 +78,4 @@ class PeWatch {
   unsigned depth_ = 0;
 };
 
-/// Marks that code of the main program runs; `watch` may be null.
-class WatchedMain {
- public:
-  WatchedMain(PeWatch* watch, const Action* action) : watch_(watch) {
-    if (watch_ != nullptr) watch_->enters(nullptr, action);
-  }
-  WatchedMain(const WatchedMain&) = delete;
-  WatchedMain& operator=(const WatchedMain&) = delete;
-  ~WatchedMain() {
-    if (watch_ != nullptr) watch_->leaves();
-  }
-
- private:
-  PeWatch* const watch_;
-};
-
 }  // namespace tess::detail

@@ -171,6 +171,9 @@ std::string Board::frame(double seconds, const std::function<std::string(PeId)>&
       fmt::format(R"({{"t":{:.3f},"pes":{},"processes":{},"epochs":{},"migrations":{},"bytes":{},)",
                   seconds, n_pes_, n_processes_, n_epochs, n_migrations, n_bytes);
   if (virtual_time_) out += fmt::format(R"("virtual":{:.9g},)", latest);
+  std::vector<PeLoad> loads;
+  for (const OfPe& of : pes_) loads.push_back(of.last.load);
+  out += "\"limits\":" + json_string(tess::describe(summarise(loads))) + ",";
   out += fmt::format(R"("busy":[{}],"rate":[{}],"queue":[{}],"memory":[{}],"late":[{}],)",
                      fmt::join(busy, ","), fmt::join(rates, ","), fmt::join(queues, ","),
                      fmt::join(memory, ","), late);

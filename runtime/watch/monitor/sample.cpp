@@ -9,6 +9,7 @@ PeSample sample_of(Pe& pe) {
   sample.pe = pe.id();
   sample.at_ns = pe.now().count();
   sample.idle_ns = pe.measuring().idle_time()->total().count();
+  sample.load = pe.measuring().load();
   sample.counts = pe.statistics();
   sample.n_ready = pe.ready().size();
   sample.n_epochs = pe.completion().n_epochs();

@@ -24,6 +24,7 @@ struct PeSample {
   std::uint64_t n_ready = 0;        ///< messages in its queue
   std::uint64_t n_epochs = 0;       ///< epochs that it keeps counters of
   std::uint64_t process_bytes = 0;  ///< memory of the process; only from the first PE of each
+  PeLoad load;                      ///< that of elements only with --stats
   std::vector<CollectionSample> collections;
 };
 

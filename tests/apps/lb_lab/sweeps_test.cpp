@@ -148,6 +148,28 @@ TEST_CASE("a row says all of a run, and the best is named", "[lb_lab]") {
   CHECK(best_json(sweep).members().front().value.at("strategy").text() == "greedy");
 }
 
+TEST_CASE("a row says what limits it, as the loads of linear work say", "[lb_lab]") {
+  Settings s = linear();
+  s.repeat = 3;
+  const Sweep sweep = sweep_on("pes=4,cost=1us", s);
+  // 64 cells on 4 PEs: the mean of 1 … 64 against the 49 … 64 of the last PE, or against cell 64.
+  const tess::LoadSummary& none = row_of(sweep, "none", 16).limits;
+  CHECK(none.wait == Approx(1 - 32.5 / 56.5).epsilon(0.01));
+  CHECK(none.balance == Approx(1 - 32.5 / 56.5).epsilon(0.01));
+  CHECK(none.element == Approx(1 - 32.5 / 56.5).epsilon(0.01));
+  CHECK(none.largest == "lb_lab::Worker[63]");
+  CHECK(row_of(sweep, "none", 1).limits.element < 0.001);
+  CHECK(row_of(sweep, "greedy", 16).limits.wait < 0.1);
+  CHECK(none.runtime > 0);
+  CHECK(none.runtime < 0.01);
+  CHECK(row_of(sweep, "none", 16).seconds_of_runs.size() == 3);
+  const kit::Json row = report().json(sweep.rows).members().front().value;
+  CHECK(row.at("seconds_of_runs").members().size() == 3);
+  CHECK(row.at("limits").at("sentence").text() == describe(row_of(sweep, "none", 1).limits));
+  CHECK_THAT(best_text(sweep),
+             Contains("  none: PEs wait 42 % of the time") && Contains("  greedy: PEs wait "));
+}
+
 TEST_CASE("the snapshots given to a strategy are saved, and their replay gives the same prediction",
           "[lb_lab]") {
   const Scratch scratch;
@@ -163,6 +185,10 @@ TEST_CASE("the snapshots given to a strategy are saved, and their replay gives t
     s.replay.push_back(scratch.path("linear-16-greedy/data." + std::to_string(pe) + ".json.br"));
   s.strategies = {"none", "greedy"};
   const Replayed replayed = replay(s);
+  CHECK_THAT(replayed.summary,
+             Contains("under greedy: PEs wait") && Contains("best of 2 strategies: greedy, max/"));
+  CHECK(replayed.strategies.members().size() == 2);
+  CHECK(replayed.last_phase.members().size() == 2);
   const auto& rows = replayed.rows.members();
   CHECK(rows.size() == static_cast<std::size_t>(std::ranges::count(replayed.table, '\n') - 1));
   std::size_t at = 0;

@@ -68,13 +68,13 @@ TEST_CASE("the assignment of a user's strategy is followed", "[balance]") {
 TEST_CASE("an assignment that is none ends the run with an error that says why", "[balance]") {
   const std::pair<balance::Strategy, std::string> wrong[] = {
       {[](const Snapshot& s) { return Assignment(s.elements.size() - 1); },
-       "array Phased: balance strategy: returned 11 PEs for 12 elements"},
+       "array Phased: balance strategy own: returned 11 PEs for 12 elements"},
       {[](const Snapshot& /*s*/) { return Assignment(); },
-       "array Phased: balance strategy: returned 0 PEs for 12 elements"},
+       "array Phased: balance strategy own: returned 0 PEs for 12 elements"},
       {[](const Snapshot& s) { return Assignment(s.elements.size(), PeId{99}); },
-       "array Phased: balance strategy: element 0 to PE 99; choose one of 4"},
+       "array Phased: balance strategy own: element 0 to PE 99; choose one of PE 0 … 3"},
       {[](const Snapshot& s) { return Assignment(s.elements.size(), PeId{-1}); },
-       "array Phased: balance strategy: element 0 to PE -1; choose one of 4"},
+       "array Phased: balance strategy own: element 0 to PE -1; choose one of PE 0 … 3"},
       {[](const Snapshot& s) {
          return Assignment(s.elements.size(), PeId{balance::Load::unknown().seconds() > 0 ? 1 : 0});
        },
@@ -90,4 +90,32 @@ TEST_CASE("an assignment that is none ends the run with an error that says why",
     CHECK_THAT(result.exception, Catch::Contains(sentence));
     CHECK(outcome.n_phases == 0);
   }
+}
+
+TEST_CASE("the communication matrix of a snapshot, and what limits its phase", "[balance]") {
+  Snapshot s;
+  s.pes = {{0, 1}, {1, 1}, {0, 0}, {}};
+  for (std::size_t i = 0; i < 3; ++i) {
+    s.elements.key.push_back({CollectionId{7}, i});
+    s.elements.pe.push_back(PeId{i == 2 ? 1 : 0});
+    s.elements.load.push_back(i == 0 ? 5 : 1);
+    s.elements.migratable.push_back(1);
+    s.elements.size_bytes.push_back(1);
+    s.elements.memory_bytes.push_back(1);
+  }
+  s.edges = {{0, 1, 100, 1}, {1, 2, 20, 1}, {2, 0, 3, 1}};
+  balance::validate(s);
+  using Matrix = std::vector<std::vector<std::uint64_t>>;
+  CHECK(balance::bytes_between(s, s.elements.pe) == Matrix{{100, 20}, {3, 0}});
+  CHECK(balance::bytes_between(s, {PeId{0}, PeId{1}, PeId{1}}) == Matrix{{0, 100}, {3, 20}});
+  // 6 s and 2 s: the mean is 4 s.
+  CHECK(
+      describe(summarise(balance::loads_of_pes(s, s.elements.pe))) ==
+      "PEs wait 33 % of the time; perfect balance would save 33 %; the largest element, number 0, "
+      "allows 17 %");
+  s.elements.index = {"[0]", "[1]", "[2]"};
+  const auto beside = [](const Snapshot& of) { return Assignment(of.elements.size(), PeId{2}); };
+  CHECK_THROWS_WITH(
+      balance::make_strategy(beside, "beside")(s),
+      Catch::Contains("strategy beside: element 0 [0] to PE 2; choose one of PE 0 … 1"));
 }

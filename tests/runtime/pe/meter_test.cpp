@@ -32,13 +32,19 @@ std::unique_ptr<Machine> machine_without_costs() {
   return make_simulated_machine(options);
 }
 
+/// The record of an element that a balancer watches.
+struct Balanced : LoadRecord {
+  Balanced() { of_pe = &sum; }
+  std::uint64_t sum = 0;
+};
+
 }  // namespace
 
 TEST_CASE("time in which the thread did not run is taken back from the call that it fell in",
           "[runtime][meter]") {
   const auto machine = make_threads_machine(1);
   Meter meter(*machine, PeId{0});
-  LoadRecord works, waits;
+  Balanced works, waits;
   meter.step_begins();
   {
     const Meter::Scope outer = meter.enter({&works, nullptr});
@@ -60,7 +66,7 @@ TEST_CASE("stolen time is taken back from each call of a long step, and from no 
           "[runtime][meter]") {
   const auto machine = make_threads_machine(1);
   Meter meter(*machine, PeId{0});
-  std::array<LoadRecord, 6> calls;  // a broadcast to them
+  std::array<Balanced, 6> calls;  // a broadcast to them
   meter.step_begins();
   for (std::size_t i = 0; i < calls.size(); ++i) {
     const Meter::Scope outer = meter.enter({&calls[i], nullptr});
@@ -81,7 +87,7 @@ TEST_CASE("time that was stolen outside of calls is no busy time, and taken back
           "[runtime][meter]") {
   const auto machine = make_threads_machine(1);
   Meter meter(*machine, PeId{0});
-  LoadRecord works, is_brief;
+  Balanced works, is_brief;
   meter.step_begins();
   for (const auto& [record, seconds] : {std::pair(&works, 3e-3), std::pair(&is_brief, 4e-4)}) {
     const Meter::Scope outer = meter.enter({record, nullptr});
@@ -100,7 +106,8 @@ TEST_CASE("the innermost scope has the time", "[runtime][meter]") {
   const auto machine = machine_without_costs();
   Meter meter(*machine, PeId{0});
   const auto pass = [&](int ns) { machine->charge(PeId{0}, Time(ns)); };
-  LoadRecord outer_record, inner_record;
+  Balanced outer_record;
+  LoadRecord inner_record;  // no balancer watches it
   meter.step_begins();
   const Meter::Scope none = meter.enter({&outer_record, nullptr});
   pass(10);
@@ -112,14 +119,18 @@ TEST_CASE("the innermost scope has the time", "[runtime][meter]") {
   pass(40'000);
   meter.step_ends();
   CHECK(outer_record.ticks == 3010);
-  CHECK(inner_record.ticks == 200);
+  CHECK(outer_record.in_run == 3010);
+  CHECK(inner_record.ticks == 0);
+  CHECK(inner_record.in_run == 200);
+  CHECK(meter.in_records() == 3210);
   CHECK(meter.busy() == 43'210);
 }
 
 TEST_CASE("an alarm rings once per period, after a call with a record", "[runtime][meter]") {
   const auto machine = machine_without_costs();
   Meter meter(*machine, PeId{0});
-  LoadRecord record;
+  Balanced record;
+  LoadRecord unwatched;
   int n_rings = 0;
   meter.add_alarm(1000, &n_rings, [&n_rings] { ++n_rings; });
   const auto call = [&](LoadRecord* of, int ns) {
@@ -131,6 +142,8 @@ TEST_CASE("an alarm rings once per period, after a call with a record", "[runtim
   CHECK(n_rings == 0);
   call(nullptr, 1);
   CHECK(n_rings == 0);  // it has no record
+  call(&unwatched, 0);
+  CHECK(n_rings == 0);
   call(&record, 1);
   CHECK(n_rings == 1);
   call(&record, 999);

@@ -97,6 +97,25 @@ TEST_CASE("the SVG of a chart has a curve per series, and every text unchanged",
   CHECK(n_texts(elements, "L2 & Linf") == 1);
 }
 
+TEST_CASE("error bars stand in the data, and are a curve of their own without a name",
+          "[apps][plot]") {
+  const Scratch scratch;
+  Chart chart{.title = "bars"};
+  chart.series.push_back({"runs", {{1, 2, 1.5, 3}, {2, 4}}});
+  CHECK(write_svg(scratch.path("a.svg"), chart) == has_gnuplot());
+  const auto lines = read_csv(slurp(scratch.path("a.csv")));
+  REQUIRE(lines.size() == 3);
+  CHECK(lines[0] == std::vector<std::string>{"series", "x", "y", "low", "high"});
+  CHECK(lines[1] == std::vector<std::string>{"runs", "1", "2", "1.5", "3"});
+  CHECK(lines[2] == std::vector<std::string>{"runs", "2", "4", "4", "4"});
+  if (!has_gnuplot()) return;
+  const auto elements = read_xml(slurp(scratch.path("a.svg")));
+  CHECK(count(elements, [](const XmlElement& e) {
+          return e.attributes.find("id=\"gnuplot_plot_") != std::string::npos;
+        }) == 2);
+  CHECK(n_texts(elements, "runs") == 1);
+}
+
 TEST_CASE("points that do not fit on the axes are left out, and the others are drawn",
           "[apps][plot]") {
   const Scratch scratch;

@@ -63,11 +63,16 @@ tess::Setup with_options(std::vector<std::string> given) {
 TEST_CASE("a frame shows what the PEs did since the last one", "[runtime][monitor]") {
   const auto machine = machine_of(2);
   Board board(*machine);
-  board.arrived(sample(0, 1000, 500, 100, 3));
-  board.arrived(sample(1, 1000, 0, 50, 5));
+  PeSample first = sample(0, 1000, 500, 100, 3);
+  first.load = {.seconds = 4, .busy = 2};
+  board.arrived(first);
+  first = sample(1, 1000, 0, 50, 5);
+  first.load = {.seconds = 4, .busy = 4};
+  board.arrived(first);
   json frame = last_frame(board, 1);
   CHECK(frame["busy"] == json({50, 100}));
   CHECK(frame["rate"] == json({100, 50}));
+  CHECK(frame["limits"] == "PEs wait 25 % of the time; perfect balance would save 25 %");
   REQUIRE(frame["collections"].size() == 1);
   CHECK(frame["collections"][0] ==
         json({{"id", "7"}, {"name", "Block"}, {"n", 8}, {"least", 3}, {"most", 5}}));
