@@ -1,8 +1,11 @@
 #include "apps/amr/block.hpp"
 
 #include "apps/kit/charge.hpp"
+#include "runtime/more/monitor.hpp"
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 
 namespace amr {
 namespace {
@@ -53,6 +56,20 @@ tess::Task Block::advance(std::int32_t first, std::int32_t n) {
     }
     patch_.apply_flows(axis);
   }
+  draw((first + n) * problem_.dt);
+}
+
+void Block::draw(double time) const {
+  const std::int32_t side = std::min(problem_.n_cells << problem_.most_level, 1024);
+  const std::int32_t n = side >> index().level();
+  const double z = problem_.centre[2] + problem_.velocity[2] * time;
+  const auto low = patch_.low();
+  const double at = (z - std::floor(z) - low[2]) * (1 << index().level());  // 0 … 1: within it
+  if (n == 0 || at < 0 || at >= 1) return;
+  tess::show("u in the plane through the centre", [&] {
+    const auto pixel = [&](double x) { return static_cast<std::int32_t>(std::lround(x * side)); };
+    return tess::Picture{side, side, pixel(low[0]), pixel(low[1]), n, patch_.slice(at, n)};
+  });
 }
 
 void Block::send_halos(std::int32_t sweep, Face face) const {

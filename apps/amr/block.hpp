@@ -67,6 +67,8 @@ class Block : public tess::Chare<Block, BlockIndex> {
   void send_halos(std::int32_t sweep, Face face) const;
   void send_flows(std::int32_t sweep, Face face) const;
   void tell() const;
+  /// Its part of the plane through the centre of the field, on the page of --monitor.
+  void draw(double time) const;
   void split();
   void merge();
 

@@ -83,6 +83,16 @@ double Patch::steepness() const {
   return static_cast<double>(most) * value_per_quantum_;
 }
 
+std::vector<double> Patch::slice(double height, std::int32_t n_values) const {
+  const auto cell = [&](double part) { return std::min(static_cast<int>(part * n()), n() - 1); };
+  std::vector<double> values;
+  for (std::int32_t y = 0; y < n_values; ++y)
+    for (std::int32_t x = 0; x < n_values; ++x)
+      values.push_back(
+          value({cell((x + 0.5) / n_values), cell((y + 0.5) / n_values), cell(height)}));
+  return values;
+}
+
 std::vector<double> Patch::layers(Face face) const {
   std::vector<double> values;
   values.reserve(idx(2 * n() * n()));

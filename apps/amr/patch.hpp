@@ -37,6 +37,8 @@ class Patch {
   [[nodiscard]] Norms compare(double time) const;
   /// The largest difference of two cells that share a face.
   [[nodiscard]] double steepness() const;
+  /// n × n values of the layer of cells at a part of its height.
+  [[nodiscard]] std::vector<double> slice(double height, std::int32_t n_values) const;
 
   // What neighbours need of this patch: two layers of values at a face.
   [[nodiscard]] std::vector<double> layers(Face face) const;

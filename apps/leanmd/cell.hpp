@@ -52,6 +52,9 @@ class Cell : public tess::Chare<Cell, tess::Index3> {
   }
 
  private:
+  /// The lowest layer of cells on the page of --monitor.
+  void draw() const;
+
   Problem problem_;
   tess::ArrayProxy<Compute> all_computes_;
   tess::SectionProxy<Compute> computes_;  // those of this cell

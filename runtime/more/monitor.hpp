@@ -66,5 +66,15 @@ void show(std::string_view name, F&& picture) {
   const detail::Element* element = current_pe().context().element;
   show(name, reinterpret_cast<std::uintptr_t>(element), std::forward<F>(picture));
 }
+/// Shows a number of the running element as the pixel at `x`, `y`; nothing in a picture of more than
+/// 2^20 pixels.
+inline void show_pixel(std::string_view name, std::int64_t width, std::int32_t height,
+                       std::int64_t x, std::int32_t y, double value) {
+  if (width > 1 << 20 || width * height > 1 << 20) return;
+  show(name, [&] {
+    return Picture{
+        static_cast<std::int32_t>(width), height, static_cast<std::int32_t>(x), y, 1, {value}};
+  });
+}
 
 }  // namespace tess

@@ -1,5 +1,7 @@
 #include "apps/lb_lab/cells/worker.hpp"
 
+#include "runtime/more/monitor.hpp"
+
 #include <utility>
 
 namespace lb_lab {
@@ -40,8 +42,12 @@ void Worker::compute() {
   here.begins();
   const Problem& problem = plan().problem;
   patch_.advance(problem, iteration_);
-  patch_.take(here.work(block_seconds(problem, patch_.block(), iteration_), patch_.word()));
+  const double seconds = block_seconds(problem, patch_.block(), iteration_);
+  patch_.take(here.work(seconds, patch_.word()));
   here.ends(iteration_);
+  const std::int32_t columns = problem.domain.columns;
+  tess::show_pixel("work of each block (s)", columns, problem.domain.rows, index().x % columns,
+                   index().x / columns, seconds);
 }
 
 void Worker::go_on() {

@@ -1,5 +1,7 @@
 #include "apps/lb_lab/particles/region.hpp"
 
+#include "runtime/more/monitor.hpp"
+
 #include <boost/unordered/unordered_flat_map.hpp>
 
 #include <algorithm>
@@ -26,6 +28,9 @@ void Region::take_in(std::int32_t iteration) {
 
 void Region::step(std::int32_t iteration) {
   take_in(iteration);
+  const Domain& domain = stations_.local().plan().problem.domain;
+  tess::show_pixel("particles of each block", domain.columns, domain.rows, index().x, index().y,
+                   static_cast<double>(particles_.size()));
   if (particles_.empty()) {
     if (arrivals_.empty()) destroy();
     return;

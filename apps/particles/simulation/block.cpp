@@ -1,6 +1,7 @@
 #include "apps/particles/simulation/block.hpp"
 
 #include "runtime/core/cpu_clock.hpp"
+#include "runtime/more/monitor.hpp"
 
 #include <algorithm>
 #include <map>
@@ -44,6 +45,12 @@ void Block::move(const Stretch& stretch) {
   take_in(stretch.first);
   std::size_t n_particles = 0;
   for (const Flock& flock : flocks_) n_particles += flock.size();
+  const Space& space = stations_.local().space();
+  const tess::Index3 &from = space.first, &to = space.last, &here = index();
+  const std::int64_t columns = to.x - from.x + 2;  // one between two layers
+  tess::show_pixel("particles of each block, layer by layer", columns * (to.z - from.z + 1) - 1,
+                   to.y - from.y + 1, columns * (here.z - from.z) + here.x - from.x,
+                   here.y - from.y, static_cast<double>(n_particles));
   if (n_particles == 0 && arrivals_.empty()) {
     destroy();
     return;

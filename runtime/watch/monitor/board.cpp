@@ -16,6 +16,7 @@ namespace {
 
 constexpr std::size_t most_past = 600;  // frames and rounds: five minutes
 constexpr std::size_t most_pixels = 1 << 20;
+constexpr std::size_t most_entries = 16;  // in a frame
 
 /// Values as text for JSON: the grey levels between `least` and `most`.
 std::string as_levels(const std::vector<float>& values, float least, float most) {
@@ -146,6 +147,7 @@ std::string Board::frame(double seconds, const std::function<std::string(PeId)>&
       of.n_missed = 0;
     else if (passes_on)
       ++of.n_missed;
+    of.runs.clear();
     if (!of.is_new) {  // perhaps it runs something long
       const auto index = static_cast<std::int32_t>(&of - pes_.data());
       std::string action = runs(PeId{index});
@@ -155,6 +157,7 @@ std::string Board::frame(double seconds, const std::function<std::string(PeId)>&
         of.percent = 100;
         of.rate = 0;
         late += fmt::format("{}[{},{}]", late.empty() ? "" : ",", index, json_string(action));
+        of.runs = std::move(action);
       }
     }
     of.is_new = false;
@@ -177,7 +180,28 @@ std::string Board::frame(double seconds, const std::function<std::string(PeId)>&
   out += fmt::format(R"("busy":[{}],"rate":[{}],"queue":[{}],"memory":[{}],"late":[{}],)",
                      fmt::join(busy, ","), fmt::join(rates, ","), fmt::join(queues, ","),
                      fmt::join(memory, ","), late);
-  return out + "\"collections\":[" + collections() + "]}";
+  return out + "\"entries\":[" + entries() + "],\"collections\":[" + collections() + "]}";
+}
+
+/// The parts of the time of all PEs that entry methods take, the greatest first.
+std::string Board::entries() const {
+  std::map<std::string, double> sums;
+  for (const OfPe& of : pes_) {
+    if (!of.runs.empty()) {
+      sums[of.runs] += 1;
+      continue;
+    }
+    for (const EntrySample& entry : of.last.entries) sums[entry.name] += entry.part;
+  }
+  std::vector<std::pair<std::string, double>> sorted(sums.begin(), sums.end());
+  std::stable_sort(sorted.begin(), sorted.end(),
+                   [](const auto& a, const auto& b) { return a.second > b.second; });
+  sorted.resize(std::min(sorted.size(), most_entries));
+  std::string out;
+  for (const auto& [name, sum] : sorted)
+    out += fmt::format("{}[{},{:.4g}]", out.empty() ? "" : ",", json_string(name),
+                       sum / static_cast<double>(n_pes_));
+  return out;
 }
 
 std::string Board::collections() const {

@@ -1,6 +1,8 @@
 // What process 0 knows of all PEs, and the events for browsers that it makes of it: lines of JSON.
 //
-//     frame    utilisation, rates, queues of each PE since the last frame; memory; chares; epochs
+//     frame    utilisation, rates, queues of each PE since the last frame; entry methods; memory;
+//              chares; epochs
+//     run      the program and its command line (the monitor adds it)
 //     round    a balance round
 //     picture  what the program draws
 //     heat     a heat map, for the browsers that watch this one
@@ -67,6 +69,7 @@ class Board {
     int percent = 0;      // busy
     double rate = 0;      // messages a second
     int n_missed = 0;     // frames since it came in which PE 0 has answered
+    std::string runs;     // an entry method for so long that it has not answered
   };
   struct Picture {
     std::int32_t width = 0, height = 0;
@@ -75,6 +78,7 @@ class Board {
   };
   [[nodiscard]] std::string frame(double seconds, const std::function<std::string(PeId)>& runs);
   [[nodiscard]] std::string collections() const;
+  [[nodiscard]] std::string entries() const;
   [[nodiscard]] static Event event_of(const std::string& name, const Picture& picture);
   [[nodiscard]] std::string name_of(CollectionId id) const;
 

@@ -31,7 +31,7 @@ using Clock = std::chrono::steady_clock;
 /// A period begins on a PE, in which these heat maps are watched.
 struct SampleAsked {
   std::vector<HeatQuery> heat;
-  bool pictures = false;  // browsers watch them
+  bool watched = false;  // browsers listen: pictures and entry methods are wanted
 };
 struct WindowEnds {};
 
@@ -125,11 +125,12 @@ class Monitor::Loop {
 
   void begin_period(Pe& pe, const SampleAsked& asked) {
     OfPe& of = of_pe(pe.id());
-    of.parts.begin_period(asked.pictures);
-    if (!of.heat && asked.heat.empty()) return;
+    of.parts.begin_period(asked.watched);
+    const bool measures = asked.watched || !asked.heat.empty();
+    if (!of.heat && !measures) return;
     if (!of.heat) of.heat = std::make_unique<PeHeat>(pe);
-    report_heat(pe, of.heat->begin(asked.heat));
-    if (asked.heat.empty()) of.heat.reset();
+    report_heat(pe, of.heat->begin(asked.heat, asked.watched));
+    if (!measures) of.heat.reset();
     if (!of.heat || !of.heat->window_is_open() || machine_.virtual_time()) return;
     auto* const message = make_message<&window_ends>(pe, WindowEnds{});
     message->source = pe.id();
@@ -138,6 +139,10 @@ class Monitor::Loop {
   }
   void end_heat_window(Pe& pe) {
     if (auto& heat = of_pe(pe.id()).heat) report_heat(pe, heat->end_window());
+  }
+  [[nodiscard]] std::vector<EntrySample> take_entries(PeId pe) {
+    const auto& heat = of_pe(pe).heat;
+    return heat ? heat->take_entries() : std::vector<EntrySample>();
   }
   [[nodiscard]] bool wants_part(const Pe& pe, std::string_view name, std::uint64_t part) {
     return of_pe(pe.id()).parts.wants(name, part);
@@ -179,7 +184,7 @@ class Monitor::Loop {
  private:
   struct OfPe {
     PartsOfPe parts;
-    std::unique_ptr<PeHeat> heat;  // while heat maps are watched
+    std::unique_ptr<PeHeat> heat;  // while a browser watches
   };
 
   static void report_heat(Pe& pe, std::vector<HeatCells>&& parts) {
@@ -200,9 +205,11 @@ class Monitor::Loop {
   void serve(const MonitorOptions& options) {
     board_.emplace(machine_);
     Server::Source source;
-    source.past = [this](const Topic& topic) {
+    source.past = [this, command = command_of_process()](const Topic& topic) {
       const std::lock_guard lock(mutex_);
-      return board_->past(topic);
+      std::vector<Event> past = board_->past(topic);
+      if (!topic) past.insert(past.begin(), {"run", command});
+      return past;
     };
     source.ask_report = [this] {
       runtime_.service().report_job([reported = reported_](std::string&& text) {
@@ -293,7 +300,9 @@ void sample_is_asked(Pe& pe, SampleAsked&& asked) {
   Monitor::Loop& loop = loop_of(pe);
   if (pe.id().value == 0) loop.ask_others(pe, asked);
   loop.begin_period(pe, asked);
-  to_process_0<&sample_arrives>(pe, sample_of(pe));
+  PeSample sample = sample_of(pe);
+  sample.entries = loop.take_entries(pe.id());
+  to_process_0<&sample_arrives>(pe, std::move(sample));
 }
 void sample_arrives(Pe& pe, PeSample&& sample) {
   loop_of(pe).arrived(std::move(sample));

@@ -3,6 +3,7 @@
 #include "runtime/core/cpu_clock.hpp"
 
 #include <algorithm>
+#include <tuple>
 
 namespace tess::detail {
 namespace {
@@ -17,11 +18,11 @@ constexpr double long_seconds = 20e-6;       // a stretch of code so long may ha
 
 }  // namespace
 
-std::vector<HeatCells> PeHeat::begin(const std::vector<HeatQuery>& queries) {
+std::vector<HeatCells> PeHeat::begin(const std::vector<HeatQuery>& queries, bool entries_too) {
   std::vector<HeatCells> out;
   if (open_) out = close_window();
   watch(queries);
-  bool by_load = false;
+  bool by_load = entries_too;
   for (auto& [query, map] : maps_) {
     if (query.map.by == HeatBy::load) {
       by_load = true;
@@ -65,7 +66,7 @@ void PeHeat::stop_metering() {
 }
 
 void PeHeat::changed(std::uint64_t at) {
-  if (running_.map != nullptr) add(at - since_);
+  if (running_.action != nullptr) add(at - since_);
   running_ = {};
   if (spent_.size() >= most_scopes_) {
     ended_ = at;
@@ -75,14 +76,16 @@ void PeHeat::changed(std::uint64_t at) {
   }
   const Element* element = pe_.context().element;
   if (element == nullptr) return;
+  running_.action = pe_.context().action;
+  if (!pe_.machine().virtual_time()) cpu_since_ = thread_cpu_seconds();
+  since_ = pe_.meter()->now();
   for (auto& [query, map] : maps_) {
     if (query.map.by != HeatBy::load) continue;
     const HostedCollection* collection = pe_.collections().find(query.map.array);
     const std::int64_t rank = collection != nullptr ? collection->rank_of(*element) : -1;
     if (rank < 0) continue;
-    running_ = {&map, map.grid.cell_of(rank), 0};
-    if (!pe_.machine().virtual_time()) cpu_since_ = thread_cpu_seconds();
-    since_ = pe_.meter()->now();
+    running_.map = &map;
+    running_.cell = map.grid.cell_of(rank);
     return;
   }
 }
@@ -95,8 +98,8 @@ void PeHeat::add(std::uint64_t ticks) {
     // Another thread may have had the core.
     ticks = std::min(ticks, meter.ticks(thread_cpu_seconds() - cpu_since_));
   }
-  if (spent_.empty() || spent_.back().map != running_.map || spent_.back().cell != running_.cell)
-    spent_.push_back(running_);
+  const auto key = [](const Spent& of) { return std::tuple(of.map, of.cell, of.action); };
+  if (spent_.empty() || key(spent_.back()) != key(running_)) spent_.push_back(running_);
   spent_.back().ticks += ticks;
 }
 
@@ -131,7 +134,21 @@ std::vector<HeatCells> PeHeat::close_window() {
       part.values.back() += static_cast<float>(static_cast<double>(one.ticks) / passed);
     }
   }
+  entries_.clear();
+  for (const Spent& one : spent_) {
+    const auto at = std::find_if(entries_.begin(), entries_.end(),
+                                 [&](const auto& entry) { return entry.first == one.action; });
+    auto& entry = at != entries_.end() ? *at : entries_.emplace_back(one.action, 0);
+    entry.second += static_cast<double>(one.ticks) / passed;
+  }
   spent_.clear();
+  return out;
+}
+
+std::vector<EntrySample> PeHeat::take_entries() {
+  std::vector<EntrySample> out;
+  for (const auto& [action, part] : std::exchange(entries_, {}))
+    out.push_back({plain_name(action->name()), part});
   return out;
 }
 

@@ -1,7 +1,7 @@
-// A PE's part in the heat maps that browsers watch. Its cost is bounded, whatever the size of the
-// array.
+// What a PE measures while a browser watches: the time of its entry methods, and its part in heat
+// maps. Its cost is bounded, whatever the size of the array.
 //
-// Load: the monitor opens a window of a few milliseconds in each period, in which the meter of the
+// Entry methods and load: the monitor opens a window of a few milliseconds in each period, in which the meter of the
 // PE shows each scope to this listener. The window ends by a message that the monitor posts. If
 // nothing has run by then, or the message follows the first one too soon, it stays open for the
 // period, so that entry methods that take longer than a window are seen, too. So it does always in
@@ -17,10 +17,12 @@
 #include "runtime/pe/pe.hpp"
 #include "runtime/watch/monitor/heat_cells.hpp"
 #include "runtime/watch/monitor/heat_grid.hpp"
+#include "runtime/watch/monitor/sample.hpp"
 
 #include <cstdint>
 #include <map>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 namespace tess::detail {
@@ -35,8 +37,12 @@ class PeHeat final : public ScopeListener {
 
   // On the PE's thread.
 
-  /// A period begins, in which these maps are watched. Returns what is known of the last one.
-  [[nodiscard]] std::vector<HeatCells> begin(const std::vector<HeatQuery>& queries);
+  /// A period begins, in which these maps are watched, and the entry methods if `entries_too`.
+  /// Returns what is known of the last one.
+  [[nodiscard]] std::vector<HeatCells> begin(const std::vector<HeatQuery>& queries,
+                                             bool entries_too);
+  /// The entry methods that ran in the last window; empty if they have been taken.
+  [[nodiscard]] std::vector<EntrySample> take_entries();
   /// The window is over: returns what it measured, unless it stays open.
   [[nodiscard]] std::vector<HeatCells> end_window();
 
@@ -56,8 +62,9 @@ class PeHeat final : public ScopeListener {
     HeatCells sent;
   };
   struct Spent {
-    Map* map = nullptr;
+    Map* map = nullptr;  // null: of no map that is watched
     std::uint32_t cell = 0;
+    const Action* action = nullptr;  // null: no scope runs
     std::uint64_t ticks = 0;
   };
 
@@ -75,11 +82,13 @@ class PeHeat final : public ScopeListener {
   bool open_ = false;                    // of the window; the meter runs
   bool listens_ = false;                 // to the meter: until the window has seen enough scopes
   std::uint64_t began_ = 0, ended_ = 0;  // ticks; of the window
-  // The running scope: when it began, or went on, in ticks and in the thread's time; and its cell.
+  // The running scope: when it began, or went on, in ticks and in the thread's time; its entry
+  // method and cell.
   std::uint64_t since_ = 0;
   double cpu_since_ = 0;
   Spent running_;
   std::vector<Spent> spent_;
+  std::vector<std::pair<const Action*, double>> entries_;  // parts of the last window's time
   std::size_t most_scopes_ = 0;
 };
 

@@ -1,9 +1,14 @@
 #include "runtime/watch/monitor/sample.hpp"
 
 #include "runtime/base/usable_memory.hpp"
+#include "runtime/core/escape.hpp"
 #include "runtime/pe/measure/idle_time.hpp"
 
+#include <fmt/core.h>
+#include <fstream>
+
 namespace tess::detail {
+
 PeSample sample_of(Pe& pe) {
   PeSample sample;
   sample.pe = pe.id();
@@ -18,6 +23,21 @@ PeSample sample_of(Pe& pe) {
   for (const HostedCollection* collection : pe.collections().all())
     sample.collections.push_back({collection->id(), collection->name(), collection->n_local()});
   return sample;
+}
+
+std::string command_of_process() {
+  std::ifstream file("/proc/self/cmdline");
+  std::string program, command, word;
+  for (bool hidden = false; std::getline(file, word, '\0');) {
+    if (program.empty()) program = word.substr(word.rfind('/') + 1);
+    constexpr std::string_view token = "--monitor-token";
+    if (hidden) word = "…";
+    hidden = word == token;
+    if (word.starts_with(std::string(token) + '=')) word = std::string(token) + "=…";
+    command += (command.empty() ? "" : " ") + word;
+  }
+  return fmt::format(R"({{"program":{},"command":{}}})", json_string(program),
+                     json_string(command));
 }
 
 }  // namespace tess::detail

@@ -16,6 +16,12 @@ struct CollectionSample {
   std::uint64_t n_local = 0;
 };
 
+/// An entry method: an estimate, from a window of a few milliseconds.
+struct EntrySample {
+  std::string name;
+  double part = 0;  ///< of the PE's time
+};
+
 struct PeSample {
   PeId pe{};
   std::int64_t at_ns = 0;    ///< the PE's clock: wall time, or virtual time
@@ -26,9 +32,13 @@ struct PeSample {
   std::uint64_t process_bytes = 0;  ///< memory of the process; only from the first PE of each
   PeLoad load;                      ///< that of elements only with --stats
   std::vector<CollectionSample> collections;
+  std::vector<EntrySample> entries;  ///< that ran; only while a browser watches
 };
 
 /// The present sample of a PE, on its thread.
 [[nodiscard]] PeSample sample_of(Pe& pe);
+
+/// The program and the words of its command line, but the token, as JSON.
+[[nodiscard]] std::string command_of_process();
 
 }  // namespace tess::detail

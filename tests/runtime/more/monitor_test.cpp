@@ -175,6 +175,7 @@ TEST_CASE("a browser sees the run while it goes on", "[runtime][monitor]") {
             CHECK(Browser(port, "/", "[::1]:80").read().starts_with("HTTP/1.1 200"));
             CHECK(Browser(port, "/", "127.0.0.1:80").read().starts_with("HTTP/1.1 200"));
             Browser events(port, "/events");
+            CHECK(events.next("run")["program"] == "test_monitor");
             json frame;
             bool has_array = false;  // not before both PEs have answered
             while (!has_array) {
@@ -185,6 +186,13 @@ TEST_CASE("a browser sees the run while it goes on", "[runtime][monitor]") {
                                               std::string::npos);
             }
             CHECK(frame["pes"] == 2);
+            double part = 0;  // of an entry method that runs all the time
+            do {
+              frame = events.next("frame");
+              for (const json& entry : frame["entries"])
+                if (entry[0].get<std::string>().ends_with("Watched::draw")) part = entry[1];
+            } while (part == 0);
+            CHECK(part < 1);
             CHECK(frame.contains("virtual") == !threads);
             Browser pictures(port, "/events");
             json picture;

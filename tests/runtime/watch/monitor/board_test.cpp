@@ -90,6 +90,34 @@ TEST_CASE("a frame shows what the PEs did since the last one", "[runtime][monito
   CHECK(frame["busy"][1] == 100);
 }
 
+TEST_CASE("a frame has the greatest parts of entry methods in the time of all PEs",
+          "[runtime][monitor]") {
+  const auto machine = machine_of(4);
+  Board board(*machine);
+  CHECK(last_frame(board, 1)["entries"] == json::array());
+  for (const int pe : {0, 1}) {
+    PeSample one = sample(pe, 1000, 0, 1);
+    one.entries = {{"Cell::a", 0.3}, {"Cell::\"b\"", 0.5 * pe}};
+    board.arrived(one);
+  }
+  json frame = last_frame(board, 2);
+  CHECK(frame["entries"] ==
+        json::array({json::array({"Cell::a", 0.15}), json::array({"Cell::\"b\"", 0.125})}));
+  // A PE that has not answered since is in one entry method.
+  for (const Event& event :
+       board.take_events(3, [](tess::PeId pe) { return pe.value == 0 ? "Cell::c" : ""; }))
+    frame = json::parse(event.json);
+  CHECK(frame["entries"] ==
+        json::array({json::array({"Cell::c", 0.25}), json::array({"Cell::\"b\"", 0.125}),
+                     json::array({"Cell::a", 0.075})}));
+  PeSample many = sample(3, 1000, 0, 1);
+  for (int i = 0; i < 40; ++i) many.entries.push_back({std::to_string(i), 0.001 * i});
+  board.arrived(many);
+  frame = last_frame(board, 4);
+  CHECK(frame["entries"].size() == 16);
+  CHECK(frame["entries"][2] == json::array({"39", 0.00975}));
+}
+
 TEST_CASE("an array that only some PEs have has no elements on another", "[runtime][monitor]") {
   const auto machine = machine_of(3);
   Board board(*machine);
