@@ -1,0 +1,128 @@
+// Signed distance fields.
+#include "apps/python/arrays.hpp"
+#include "apps/python/module.hpp"
+#include "collide/dn_field/build_field.hpp"
+#include "collide/dn_field/field_file.hpp"
+#include "collide/dn_field/look_up.hpp"
+#include "collide/read_surface.hpp"
+
+#include <limits>
+
+namespace tessera_python {
+namespace {
+
+using namespace tess::dn;
+using tess::ErrorCode;
+using tess::fail;
+
+Surface surface_of(const py::handle& points, const py::handle& triangles) {
+  const Doubles given = doubles(points, "points", {-1, 3}, "(n, 3), x, y, z of each point");
+  require_finite(given, "points");
+  const std::span<const Vec3> all = rows<Vec3>(given);
+  const Integers corners = indices(triangles, "triangles", {-1, 3},
+                                   "(m, 3), the points of each triangle", all.size(), "points");
+  Surface surface;
+  surface.vertices.assign(all.begin(), all.end());
+  surface.triangles.resize(static_cast<std::size_t>(corners.shape(0)));
+  const std::int64_t* corner = corners.data();
+  for (auto& triangle : surface.triangles)
+    for (auto& vertex : triangle) vertex = static_cast<std::uint32_t>(*corner++);
+  return surface;
+}
+
+/// The corners of triangles, (m, 3, 3), for searches of pairs.
+py::array corners(const py::handle& points, const py::handle& triangles) {
+  const Surface surface = surface_of(points, triangles);
+  std::vector<std::array<Vec3, 3>> out;
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t) out.push_back(surface.corners(t));
+  const auto n = static_cast<py::ssize_t>(out.size());
+  return array_of<double>(std::move(out), {n, 3, 3});
+}
+
+/// `thickness` is infinite, and `margin` is negative, where they are not given.
+Field build(const py::handle& points, const py::handle& triangles, int n, double margin,
+            double thickness, bool two_sided) {
+  const Surface given = surface_of(points, triangles);
+  const py::gil_scoped_release others_run;
+  validate(given);
+  const Surface surface = two_sided ? given : outward(given);
+  const Bounds box = bounds(surface);
+  const Vec3 size = box.size();
+  if (margin < 0) margin = 0.1 * std::max({size.x, size.y, size.z});
+  FieldOptions options;
+  options.thickness = thickness;
+  options.sides = two_sided ? Sides::two : Sides::one;
+  return build_field(surface, grid_around(box, n, margin), options);
+}
+
+LookUp kind_of(const std::string& name) {
+  for (std::size_t k = 0; k < std::size(look_up_names); ++k)
+    if (name == look_up_names[k]) return static_cast<LookUp>(k);
+  fail(ErrorCode::bad_argument, "kind: '", name,
+       "' is unknown; choose nearest, tangent or trilinear");
+}
+
+/// Samples in blocks, whose coordinates are turned into columns of floats.
+py::tuple sample(const Field& field, const py::handle& given, const std::string& kind_name) {
+  const LookUp kind = kind_of(kind_name);
+  const Doubles points = doubles(given, "points", {-1, 3}, "(m, 3), x, y, z of each point");
+  const std::span<const Vec3> all = rows<Vec3>(points);
+  require_finite(points, "points");
+  std::vector<double> distance(all.size()), normal(3 * all.size());
+  {
+    const py::gil_scoped_release others_run;
+    constexpr std::size_t block = 4096;
+    std::array<std::vector<float>, 7> columns;  // x, y, z; distance; the normal
+    for (std::size_t first = 0; first < all.size(); first += block) {
+      const std::size_t n = std::min(block, all.size() - first);
+      for (auto& column : columns) column.resize(n);
+      for (std::size_t i = 0; i < n; ++i)
+        for (int k = 0; k < 3; ++k)
+          columns[static_cast<std::size_t>(k)][i] =
+              static_cast<float>(component(all[first + i], k));
+      look_up(field, kind, {columns[0], columns[1], columns[2]},
+              {columns[3], columns[4], columns[5], columns[6]});
+      for (std::size_t i = 0; i < n; ++i) {
+        const float d = columns[3][i];
+        distance[first + i] = d == out_of_reach ? HUGE_VAL : static_cast<double>(d);
+        for (std::size_t k = 0; k < 3; ++k)
+          normal[3 * (first + i) + k] = static_cast<double>(columns[4 + k][i]);
+      }
+    }
+  }
+  const auto n = static_cast<py::ssize_t>(all.size());
+  return py::make_tuple(array_of(std::move(distance)), array_of<double>(std::move(normal), {n, 3}));
+}
+
+py::tuple read(const std::string& path) {
+  Surface surface = read_surface(path);
+  const auto n = static_cast<py::ssize_t>(surface.vertices.size());
+  const auto n_triangles = static_cast<py::ssize_t>(surface.triangles.size());
+  return py::make_tuple(array_of<double>(std::move(surface.vertices), {n, 3}),
+                        array_of<std::uint32_t>(std::move(surface.triangles), {n_triangles, 3}));
+}
+
+}  // namespace
+
+void add_sdf(py::module_& module) {
+  py::class_<Field>(module, "Field")
+      .def(py::init(&build))
+      .def("sample", &sample)
+      .def("save", [](const Field& field, const std::string& path) { save_field(field, path); })
+      .def_property_readonly("cell", [](const Field& field) { return field.grid.cell; })
+      .def_property_readonly("shape",
+                             [](const Field& field) {
+                               return py::make_tuple(field.grid.n[0], field.grid.n[1],
+                                                     field.grid.n[2]);
+                             })
+      .def_property_readonly("box", [](const Field& field) {
+        const Bounds box = field.grid.box();
+        return py::make_tuple(py::make_tuple(box.low.x, box.low.y, box.low.z),
+                              py::make_tuple(box.high.x, box.high.y, box.high.z));
+      });
+  module.def("corners", &corners);
+  module.def("load_field", &load_field);
+  module.def("read_surface", &read);
+}
+
+}  // namespace tessera_python

@@ -1,0 +1,170 @@
+"""Tessera from Python: mesh transfer, collision, distance fields and load balancing on NumPy arrays.
+
+Arrays of float64 in C order are read where they are; others are converted. Lengths are in the units of
+the meshes. Bad input raises tessera.Error, a ValueError with the value, its place and the remedy. The
+interpreter's lock is released while the library works. Calls may come from several threads: transfers
+take turns, since each uses `pes` threads of its own, and all else runs at once. A KeyboardInterrupt is
+raised when the call ends.
+"""
+from __future__ import annotations
+
+import enum
+import os
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _tessera, balance, collide, sdf
+from ._tessera import Error
+
+__all__ = ["Coupling", "Error", "Mesh", "Status", "TransferResult", "balance", "collide", "read_mesh",
+           "sdf", "transfer", "write_mesh"]
+
+KINDS = ("linear", "second-order", "limited", "nearest", "projection", "moving-least-squares",
+         "conservative", "conservative-bounded", "conservative-lumped")
+
+
+class Status(enum.IntEnum):
+    """Where a target point lies in the source mesh."""
+
+    INSIDE = 0    #: strictly inside a cell, or covered by the source
+    BOUNDARY = 1  #: exactly on a face, edge or vertex
+    SNAPPED = 2   #: outside, but within the tolerance of a cell
+    OUTSIDE = 3   #: in no cell: `outside` decides the value
+
+
+def _policy(kind: str, outside: str | float | None) -> str:
+    if outside is None:
+        return "keep" if kind.startswith("conservative") else "nearest"
+    return outside if isinstance(outside, str) else f"value:{float(outside)!r}"
+
+
+class Coupling:
+    """Searches once where target points lie in a source mesh, then moves any number of fields.
+
+    source_points: (n, 3) float. source_tets: (m, 4) int; (m, 3) of triangles or (m, 2) of edges; None
+    for a cloud of points (kinds nearest and moving-least-squares). target_points: (k, 3). target_tets:
+    the cells of the target, for conservative kinds. kind: one of tessera.KINDS. outside: "nearest", a
+    number, or "keep" (the value of `initial`, or NaN); None is "nearest", and "keep" for conservative
+    kinds. tolerance: how far outside a point may be to snap to a cell. order: of moving least squares,
+    1 or 2. clamp: keeps values within those of the donor. pes: the number of threads.
+
+    status: (k,) uint8 of Status. distance: (k,) to the source, 0 inside; None for conservative kinds.
+    notes: counts of target points that are worth a look, such as {"lower_order": 12}.
+
+    Kinds whose values are a matrix times the source's values keep the matrix. The others (limited,
+    conservative ones, and clamp) have none: each apply() searches again, once for all its fields.
+    """
+
+    def __init__(self, source_points: ArrayLike, source_tets: ArrayLike | None, target_points: ArrayLike,
+                 kind: str = "linear", outside: str | float | None = None, pes: int = 2, *,
+                 target_tets: ArrayLike | None = None, tolerance: float = 0.0, order: int = 1,
+                 clamp: bool = False) -> None:
+        self._meshes = (source_points, source_tets, target_points, target_tets)
+        self._options = (kind, _policy(kind, outside), tolerance, order, clamp)
+        self._pes = pes
+        self._outside = outside if isinstance(outside, (int, float)) else np.nan
+        has_matrix = not (clamp or kind == "limited" or kind.startswith("conservative"))
+        _, self.status, self.distance, self._weights, self.notes = self._run([], None, has_matrix)
+
+    def _run(self, fields: list[ArrayLike], initial: ArrayLike | None, weights: bool) -> tuple[Any, ...]:
+        source_points, source_tets, target_points, target_tets = self._meshes
+        return _tessera.transfer(source_points, source_tets, fields, target_points, target_tets, initial,
+                                 *self._options, weights, self._pes)
+
+    def apply(self, *fields: ArrayLike, initial: ArrayLike | None = None) -> Any:
+        """The values at the target points of one field, (n,) or (n, c) → (k,) or (k, c); of several
+        fields a list. `initial`: what points without a donor keep, in the shape of the result."""
+        if self._weights is None:
+            out = self._run(list(fields), initial, False)[0]
+        else:
+            out = [self._weights.apply(values, self._outside, initial) for values in fields]
+        return out[0] if len(fields) == 1 else out
+
+    def weights_csr(self) -> tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.int64], tuple[int, int]]:
+        """(data, indices, indptr, shape) of the matrix in SciPy's CSR layout: target = matrix × source.
+        A row without entries is a point without a donor."""
+        if self._weights is None:
+            raise Error(f"kind {self._options[0]} has no weights: its values are limited, or solve a "
+                        "system; choose linear or second-order, without clamp")
+        matrix = self._weights
+        return (matrix.data, matrix.indices, matrix.indptr.astype(np.int64),
+                (matrix.n_rows, matrix.n_columns))
+
+    def weights(self) -> Any:
+        """The same as a scipy.sparse.csr_matrix."""
+        data, indices, indptr, shape = self.weights_csr()
+        try:
+            from scipy.sparse import csr_matrix
+        except ImportError as error:
+            raise ImportError("weights() needs SciPy, which cannot be imported here: install it, or take "
+                              "weights_csr(), which gives (data, indices, indptr, shape)") from error
+        return csr_matrix((data, indices, indptr), shape=shape)
+
+
+@dataclass
+class TransferResult:
+    """What transfer() returns. values: (k,) or (k, c) float64. status, distance, notes: as in Coupling.
+    """
+
+    values: NDArray[np.float64]
+    status: NDArray[np.uint8]
+    distance: NDArray[np.float64] | None
+    notes: dict[str, int]
+    _arguments: tuple[tuple[Any, ...], dict[str, Any]] = field(repr=False)
+
+    @cached_property
+    def donors(self) -> NDArray[np.int64]:
+        """(k, w): the source points that each value comes from, padded with -1. The first use searches
+        once more; kinds without weights raise Error."""
+        arguments, options = self._arguments
+        _, indices, indptr, shape = Coupling(*arguments, **options).weights_csr()
+        sizes = np.diff(indptr)
+        out = np.full((shape[0], int(sizes.max(initial=0))), -1, dtype=np.int64)
+        out[np.arange(out.shape[1]) < sizes[:, None]] = indices
+        return out
+
+
+def transfer(source_points: ArrayLike, source_tets: ArrayLike | None, values: ArrayLike,
+             target_points: ArrayLike, kind: str = "linear", outside: str | float | None = None, pes: int = 2,
+             *, target_tets: ArrayLike | None = None, initial: ArrayLike | None = None, tolerance: float = 0.0,
+             order: int = 1, clamp: bool = False) -> TransferResult:
+    """Moves a field from a mesh to the points of another one.
+
+    values: (n,) or (n, c), per source point. initial: (k,) or (k, c), kept by points without a donor.
+    All else as in Coupling. The result does not depend on `pes`.
+    """
+    search = (source_points, source_tets, target_points, kind, outside, pes)
+    options = {"target_tets": target_tets, "tolerance": tolerance, "order": order, "clamp": clamp}
+    out, status, distance, _, notes = _tessera.transfer(
+        source_points, source_tets, [values], target_points, target_tets, initial, kind,
+        _policy(kind, outside), tolerance, order, clamp, False, pes)
+    return TransferResult(out[0], status, distance, notes, (search, options))
+
+
+@dataclass
+class Mesh:
+    """points: (n, 3) float64. tets: (m, 4) int32; (m, 3) of a file of triangles, (m, 2) of edges.
+    fields: name → (n,) or (n, c), per point; cell_fields: the same per cell. times: of the file."""
+
+    points: NDArray[np.float64]
+    tets: NDArray[np.int32]
+    fields: dict[str, NDArray[np.float64]] = field(default_factory=dict)
+    cell_fields: dict[str, NDArray[np.float64]] = field(default_factory=dict)
+    times: list[float] = field(default_factory=list)
+
+
+def read_mesh(path: str | os.PathLike[str], step: int = -1) -> Mesh:
+    """Reads ExodusII, gmsh (2.x, 4.x) or VTK (.vtu, legacy .vtk), or makes a cube ("kuhn:8@0.2"), with the
+    fields of a time step: 0 is the first one, -1 the last. Hexahedra and others become tetrahedra."""
+    return Mesh(*_tessera.read_mesh(os.fspath(path), step))
+
+
+def write_mesh(path: str | os.PathLike[str], points: ArrayLike, tets: ArrayLike,
+               fields: dict[str, ArrayLike] | None = None,
+               cell_fields: dict[str, ArrayLike] | None = None) -> None:
+    """Writes VTK (.vtu) or ExodusII (.exo, .e, .ex2) by the ending of the path, complete or not at all."""
+    _tessera.write_mesh(os.fspath(path), points, tets, fields or {}, cell_fields or {})

@@ -1,0 +1,101 @@
+"""Load balancing without a run: snapshots of loads, strategies by name, and strategies in Python.
+
+A strategy in Python is a function of a Snapshot that returns the new PE of each element, (n,) int:
+
+    def rotate(snapshot):
+        return (snapshot.owners + 1) % snapshot.n_pes
+
+Elements that may not move, or whose load is unknown, stay, whatever it returns.
+"""
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Union
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _tessera, plot
+from ._tessera import Snapshot
+
+__all__ = ["Comparison", "Evaluation", "Snapshot", "Strategy", "assign", "compare", "evaluate", "read",
+           "snapshot", "strategies", "write"]
+
+Strategy = Union[str, Callable[[Snapshot], ArrayLike]]
+
+
+@dataclass(frozen=True)
+class Evaluation:
+    """imbalance: time of the slowest PE over the ideal time, 1 at best. moves: elements that change their
+    PE. moved_bytes: their size. external_bytes: of messages between PEs."""
+
+    imbalance: float
+    moves: int
+    moved_bytes: int
+    external_bytes: int
+
+
+def snapshot(loads: ArrayLike, owners: ArrayLike, n_pes: int, *, speeds: ArrayLike | None = None,
+             background: ArrayLike | None = None, sizes: ArrayLike | None = None, edges: ArrayLike | None = None,
+             positions: ArrayLike | None = None) -> Snapshot:
+    """A snapshot from arrays. loads: (n,) seconds on a PE of speed 1, NaN if unknown. owners: (n,) PEs.
+    speeds: (n_pes,), 1 by default. background: (n_pes,) seconds beside the elements. sizes: (n,) bytes.
+    edges: (m, 4) int: from, to, bytes, messages. positions: (n, 3), for rcb and hilbert."""
+    return Snapshot(loads, owners, n_pes, speeds, background, sizes, edges, positions)
+
+
+def read(*paths: str | os.PathLike[str]) -> list[Snapshot]:
+    """The phases of one run, in order, from all of its files: those of Tessera (lb_lab --save-snapshot),
+    or of vt (one file per rank; .br is unpacked)."""
+    return [s for _, s, _ in _tessera.read_snapshots([os.fspath(path) for path in paths])]
+
+
+def write(path: str | os.PathLike[str], snapshots: Sequence[Snapshot]) -> None:
+    """Writes phases for read(), and for vt's tools; compressed if the path ends in .br."""
+    _tessera.write_snapshots(os.fspath(path), list(snapshots))
+
+
+def strategies() -> list[str]:
+    """The names of the strategies."""
+    return _tessera.strategies()
+
+
+def assign(snapshot: Snapshot, strategy: Strategy, seed: int = 1) -> NDArray[np.int32]:
+    """The new PE of each element, (n,). strategy: a name of strategies(), or a function."""
+    return _tessera.assign(snapshot, strategy, seed)
+
+
+def evaluate(snapshot: Snapshot, owners: ArrayLike | None = None) -> Evaluation:
+    """The quality of an assignment, (n,) int; of the present one without it."""
+    return Evaluation(**_tessera.evaluate(snapshot, snapshot.owners if owners is None else owners))
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """Name → evaluation; the first row, "before", is the present assignment. str() is a table."""
+
+    rows: dict[str, Evaluation]
+
+    def __str__(self) -> str:
+        width = max(map(len, self.rows))
+        lines = [f"{'strategy':{width}}  imbalance  moves  moved bytes  external bytes"]
+        lines += [f"{name:{width}}  {e.imbalance:9.3f}  {e.moves:5}  {e.moved_bytes:11}  {e.external_bytes:14}"
+                  for name, e in self.rows.items()]
+        return "\n".join(lines)
+
+    def plot(self, path: str | os.PathLike[str]) -> None:
+        """Draws the imbalances, and the bytes between PEs, as bars (SVG)."""
+        rows = self.rows.values()
+        plot.bars(path, "load balancing", list(self.rows), {"slowest PE / ideal": [e.imbalance for e in rows],
+                                                            "bytes between PEs": [e.external_bytes for e in rows]})
+
+
+def compare(snapshot: Snapshot, strategies: Sequence[Strategy], seed: int = 1) -> Comparison:
+    """Runs strategies, names or functions, on one snapshot."""
+    rows = {"before": evaluate(snapshot)}
+    for strategy in strategies:
+        name = strategy if isinstance(strategy, str) else getattr(strategy, "__name__", "own")
+        rows[name] = evaluate(snapshot, assign(snapshot, strategy, seed))
+    return Comparison(rows)

@@ -1,0 +1,289 @@
+// Fields from mesh to mesh. The meshes are cut into patches, chares that refer to the job in the
+// memory of the interpreter: they read its values there, and write theirs there, each row once.
+#include "apps/python/mesh.hpp"
+#include "apps/python/module.hpp"
+#include "m2m/coupling_weights.hpp"
+#include "m2m/mesh_parts.hpp"
+#include "m2m/policy.hpp"
+#include "runtime/core/hilbert.hpp"
+#include "runtime/more/hosted.hpp"
+
+#include <numeric>
+#include <pybind11/stl.h>
+
+namespace tessera_python {
+namespace {
+
+using namespace tess::m2m;
+using tess::ErrorCode;
+using tess::fail;
+
+/// A field that a job moves, in the memory of arrays.
+struct Move {
+  std::span<const double> from;
+  std::span<double> to;  ///< also what points without a donor keep
+  std::size_t n_components = 1;
+};
+
+struct Job {
+  CouplingOptions options;
+  std::vector<MeshPart> source, target;
+  std::int64_t n_sources = 0, n_targets = 0;
+  std::vector<Move> moves;
+  std::vector<std::uint8_t> status;
+  std::vector<double> distance;
+  SearchSummary summary;
+  std::optional<WeightMatrix> weights;
+  bool wants_weights = false;
+};
+/// Of the run; runs take turns.
+Job* job = nullptr;
+
+std::size_t position(tess::m2m::GlobalId id) {
+  return static_cast<std::size_t>(id);
+}
+
+std::span<double> span_of(Doubles& array) {
+  return {array.mutable_data(), static_cast<std::size_t>(array.size())};
+}
+
+/// A part of a mesh of the job.
+template <class C>
+class Patch : public tess::Chare<C, tess::Index1>, public Piece<C> {
+ public:
+  [[nodiscard]] MeshView mesh_view() const { return tess::m2m::view_of(part()); }
+
+  std::vector<double> field;
+
+ protected:
+  [[nodiscard]] const MeshPart& part() const {
+    return (C::is_source ? job->source : job->target)[static_cast<std::size_t>(this->index().x)];
+  }
+  void fetch(std::span<const double> values, std::size_t n_rows, std::size_t n) {
+    field.resize(n_rows * n);
+    for (std::size_t i = 0; i < n_rows; ++i)
+      std::copy_n(&values[position(part().point_ids[i]) * n], n, &field[i * n]);
+  }
+};
+
+class PythonSource : public Patch<PythonSource> {
+ public:
+  static constexpr bool is_source = true;
+  void begin(std::size_t move) {
+    fetch(job->moves[move].from, part().points.size(), job->moves[move].n_components);
+  }
+};
+
+class PythonTarget : public Patch<PythonTarget> {
+ public:
+  static constexpr bool is_source = false;
+  void begin(std::size_t move) {
+    move_ = move;
+    fetch(job->moves[move].to, position(part().n_owned), job->moves[move].n_components);
+  }
+  void received(CouplingId /*coupling*/) {
+    const Move& move = job->moves[move_];
+    for (std::size_t i = 0; i < position(part().n_owned); ++i)
+      std::copy_n(&field[i * move.n_components], move.n_components,
+                  &move.to[position(part().point_ids[i]) * move.n_components]);
+  }
+  void report(CouplingId coupling) {
+    const auto of_status = status(coupling);
+    const auto of_distance = distance(coupling);
+    for (std::size_t i = 0; i < of_status.size(); ++i) {
+      const std::size_t to = position(part().point_ids[i]);
+      job->status[to] = static_cast<std::uint8_t>(of_status[i]);
+      if (!of_distance.empty()) job->distance[to] = of_distance[i];
+    }
+  }
+
+ private:
+  std::size_t move_ = 0;
+};
+
+tess::Task work(Job& of) {
+  job = &of;
+  const auto n = [](const std::vector<MeshPart>& parts) {
+    return tess::range(static_cast<std::int32_t>(parts.size()));
+  };
+  tess::ArrayProxy<PythonSource> source;
+  tess::ArrayProxy<PythonTarget> target;
+  co_await tess::epoch([&] {
+    source = tess::create<PythonSource>(n(of.source));
+    target = tess::create<PythonTarget>(n(of.target));
+  });
+  Coupling coupling(source, target, of.options);
+  of.summary = co_await coupling.search();
+  const CouplingId id = coupling.id();
+  co_await tess::epoch([&] { target.broadcast<&PythonTarget::report>(id); });
+  if (of.wants_weights) of.weights = co_await collect_weights(coupling, of.n_sources, of.n_targets);
+  for (std::size_t k = 0; k < of.moves.size(); ++k) {
+    co_await tess::epoch([&] {
+      source.broadcast<&PythonSource::begin>(k);
+      target.broadcast<&PythonTarget::begin>(k);
+    });
+    co_await coupling.apply<&PythonSource::field, &PythonTarget::field>();
+  }
+}
+
+/// Consecutive points of a Hilbert curve, as parts of equal numbers.
+std::vector<MeshPart> cloud_parts(std::span<const Point> points, std::size_t n_parts) {
+  const Aabb box = tess::collide::box_around(points);
+  constexpr unsigned levels = 16;
+  const auto key_of = [&](const Point& p) {
+    std::array<std::uint32_t, 3> cell{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double side = box.hi[k] - box.lo[k];
+      if (side > 0) cell[k] = static_cast<std::uint32_t>((p[k] - box.lo[k]) / side * 65535.0);
+    }
+    return tess::hilbert_key(cell, 3, levels);
+  };
+  std::vector<std::pair<std::uint64_t, GlobalId>> order;
+  order.reserve(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i)
+    order.emplace_back(key_of(points[i]), static_cast<GlobalId>(i));
+  std::sort(order.begin(), order.end());
+  std::vector<MeshPart> parts(n_parts);
+  for (std::size_t k = 0; k < n_parts; ++k) {
+    for (std::size_t i = points.size() * k / n_parts; i < points.size() * (k + 1) / n_parts; ++i)
+      parts[k].point_ids.push_back(order[i].second);
+    std::sort(parts[k].point_ids.begin(), parts[k].point_ids.end());
+    for (const GlobalId id : parts[k].point_ids) parts[k].points.push_back(points[position(id)]);
+    parts[k].n_owned = static_cast<std::int64_t>(parts[k].points.size());
+  }
+  return parts;
+}
+
+struct Request {
+  std::string kind, outside;
+  double tolerance;
+  std::int32_t order;
+  bool clamp, weights;
+  std::int32_t pes;
+};
+
+CouplingOptions options_of(const Request& request, const TetMesh& source, const TetMesh& target) {
+  CouplingOptions options;
+  options.kind = parse_transfer_kind(request.kind);
+  options.policy = parse_policy(request.outside);
+  options.tolerance = request.tolerance;
+  options.order = request.order;
+  options.clamp = request.clamp;
+  check(options);
+  if (request.weights) require_weights(options.kind, options.clamp);
+  const TransferKind kind = options.kind;
+  if (kind == TransferKind::native)
+    fail(ErrorCode::bad_argument,
+         "kind native needs the elements of a file, which arrays of tetrahedra do not have: choose "
+         "linear, or the program m2m_transfer");
+  if (source.tets.empty() && kind != TransferKind::nearest &&
+      kind != TransferKind::moving_least_squares)
+    fail(ErrorCode::bad_argument, "kind ", name_of(kind),
+         " needs source_tets; without them, choose nearest or moving-least-squares");
+  if (is_conservative(kind) && target.tets.empty())
+    fail(ErrorCode::bad_argument, "kind ", name_of(kind),
+         " integrates over cells of the target: give target_tets");
+  if (source.points.empty())
+    fail(ErrorCode::bad_value,
+         "source_points: there are none, so no value can be moved; give some");
+  require_dimensions(kind, options.tolerance, source.tets.empty() ? 3 : source.dimension,
+                     target.tets.empty() ? 3 : target.dimension);
+  return options;
+}
+
+std::vector<MeshPart> parts_of(const TetMesh& mesh, std::int32_t halo_layers, bool as_cloud,
+                               std::size_t n_parts) {
+  if (!mesh.tets.empty()) (void)validate(mesh);
+  if (as_cloud)
+    return cloud_parts(mesh.points, std::max<std::size_t>(std::min(n_parts, mesh.n_points()), 1));
+  return mesh_parts(mesh, static_cast<std::int32_t>(std::min(n_parts, mesh.n_tets())),
+                    PartitionMethod::curve, halo_layers);
+}
+
+py::tuple transfer(const py::object& source_points, const py::object& source_tets,
+                   const py::list& fields, const py::object& target_points,
+                   const py::object& target_tets, const py::object& kept, const Request& request) {
+  const TetMesh source = mesh_of(source_points, source_tets, "source");
+  const TetMesh target = mesh_of(target_points, target_tets, "target");
+  Job of;
+  of.options = options_of(request, source, target);
+  of.wants_weights = request.weights;
+  of.n_sources = static_cast<std::int64_t>(source.n_points());
+  of.n_targets = static_cast<std::int64_t>(target.n_points());
+  std::vector<Values> given;
+  py::list results;
+  for (std::size_t k = 0; k < fields.size(); ++k) {
+    given.push_back(values_of(fields[k], "values", source.n_points(), "source points"));
+    Doubles room = given.back().room(target.n_points());
+    fill_kept(kept, given.back(), std::numeric_limits<double>::quiet_NaN(), room);
+    of.moves.push_back({given.back().span(), span_of(room), given.back().n_components});
+    results.append(room);
+  }
+  {
+    const py::gil_scoped_release others_run;
+    const bool conserves = is_conservative(of.options.kind);
+    const std::size_t n_parts = 8 * static_cast<std::size_t>(std::clamp(request.pes, 1, 4096));
+    of.source = parts_of(source, source_halo_layers(of.options.kind), source.tets.empty(), n_parts);
+    of.target = parts_of(target, target_halo_layers(of.options.kind), !conserves, n_parts);
+    of.status.assign(target.n_points(), static_cast<std::uint8_t>(Status::outside));
+    if (!conserves) of.distance.assign(target.n_points(), 0.0);
+    tess::run_hosted(request.pes, [&] { return work(of); });
+  }
+  const Tally& tally = of.summary.tally;
+  py::dict notes;
+  if (tally.n_overcovered != 0) notes["overcovered"] = tally.n_overcovered;
+  if (tally.n_lower_order != 0) notes["lower_order"] = tally.n_lower_order;
+  if (tally.n_lower_dimension != 0) notes["lower_dimension"] = tally.n_lower_dimension;
+  py::object distance = py::none();
+  if (!of.distance.empty() || target.points.empty()) distance = array_of(std::move(of.distance));
+  py::object weights = py::none();
+  if (of.weights) weights = py::cast(std::move(*of.weights));
+  return py::make_tuple(results, array_of(std::move(of.status)), distance, weights, notes);
+}
+
+Doubles apply_weights(const WeightMatrix& matrix, const py::object& field, double outside,
+                      const py::object& kept) {
+  const auto n_rows = static_cast<std::size_t>(matrix.n_rows());
+  const Values given =
+      values_of(field, "values", static_cast<std::size_t>(matrix.n_columns), "source points");
+  Doubles out = given.room(n_rows);
+  fill_kept(kept, given, outside, out);
+  const std::span<double> to = span_of(out);
+  const py::gil_scoped_release others_run;
+  apply(matrix, given.span(), given.n_components, to);
+  return out;
+}
+
+}  // namespace
+
+void add_transfer(py::module_& module) {
+  py::class_<WeightMatrix>(module, "Weights")
+      .def_property_readonly("n_rows", &WeightMatrix::n_rows)
+      .def_readonly("n_columns", &WeightMatrix::n_columns)
+      .def_property_readonly("data",
+                             [](const py::object& self) {
+                               const auto& rows = self.cast<const WeightMatrix&>().rows;
+                               return view_of<double>(rows.weights, self);
+                             })
+      .def_property_readonly("indices",
+                             [](const py::object& self) {
+                               const auto& rows = self.cast<const WeightMatrix&>().rows;
+                               return view_of<VertexId>(rows.columns, self);
+                             })
+      .def_property_readonly("indptr",
+                             [](const py::object& self) {
+                               const auto& rows = self.cast<const WeightMatrix&>().rows;
+                               return view_of<std::uint64_t>(rows.begin, self);
+                             })
+      .def("apply", &apply_weights);
+  module.def("transfer", [](const py::object& source_points, const py::object& source_tets,
+                            const py::list& fields, const py::object& target_points,
+                            const py::object& target_tets, const py::object& kept,
+                            const std::string& kind, const std::string& outside, double tolerance,
+                            std::int32_t order, bool clamp, bool weights, std::int32_t pes) {
+    return transfer(source_points, source_tets, fields, target_points, target_tets, kept,
+                    {kind, outside, tolerance, order, clamp, weights, pes});
+  });
+}
+
+}  // namespace tessera_python
