@@ -28,7 +28,7 @@ void require_shape(const py::array& array, std::string_view name, const Shape& s
   for (std::size_t k = 0; fits && k < shape.size(); ++k)
     fits = shape[k] < 0 || array.shape(static_cast<py::ssize_t>(k)) == shape[k];
   if (!fits)
-    fail(ErrorCode::bad_value, name, ": its shape is ", text_of(array), ", and the shape is ",
+    fail(ErrorCode::bad_value, name, ": its shape is ", text_of(array), "; expected ",
          layout);
 }
 
@@ -59,8 +59,10 @@ Integers indices(const py::handle& given, std::string_view name, const Shape& sh
   require_shape(array, name, shape, layout);
   Integers out(array);
   const std::int64_t* const first = out.data();
-  for (py::ssize_t i = 0; i < out.size(); ++i)
-    if (first[i] < 0 || static_cast<std::uint64_t>(first[i]) >= n)
+  bool bad = false;
+  for (py::ssize_t i = 0; i < out.size(); ++i) bad |= static_cast<std::uint64_t>(first[i]) >= n;
+  for (py::ssize_t i = 0; bad && i < out.size(); ++i)
+    if (static_cast<std::uint64_t>(first[i]) >= n)
       fail(ErrorCode::out_of_range, name, place_of(out, i), " is ", first[i], ", and there are ", n,
            " ", things, ", numbered from 0 on");
   return out;

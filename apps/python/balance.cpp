@@ -15,36 +15,35 @@ using namespace tess::balance;
 using tess::ErrorCode;
 using tess::fail;
 
-/// A list as an array of another type of number.
-template <class T, class List, class Value>
-py::array_t<T> array_from(const List& list, const Value& value) {
-  std::vector<T> out;
-  out.reserve(list.size());
-  for (const auto& one : list) out.push_back(static_cast<T>(value(one)));
-  return array_of(std::move(out));
-}
-constexpr auto itself = [](const auto& number) { return number; };
-constexpr auto number_of = [](tess::PeId pe) { return pe.value; };
-
-py::array_t<double> loads_of(const Snapshot& s) {
-  return array_from<double>(s.elements.load, [](const Load& load) {
-    return load.seconds_or(std::numeric_limits<double>::quiet_NaN());
-  });
+py::array_t<std::int32_t> pes_of(const Assignment& assignment) {
+  std::vector<std::int32_t> pes;
+  for (const tess::PeId pe : assignment) pes.push_back(pe.value);
+  return array_of(std::move(pes));
 }
 
-py::array_t<std::int64_t> edges_of(const Snapshot& s) {
-  std::vector<std::int64_t> out;
+/// What tessera/balance.py keeps of a snapshot.
+py::dict arrays_of(const Snapshot& s) {
+  const auto n = static_cast<py::ssize_t>(s.elements.size());
+  std::vector<double> loads;
+  for (const Load load : s.elements.load)
+    loads.push_back(load.seconds_or(std::numeric_limits<double>::quiet_NaN()));
+  std::vector<std::int64_t> edges;
   for (const Edge& edge : s.edges)
     for (const std::uint64_t number :
          {std::uint64_t{edge.from}, std::uint64_t{edge.to}, edge.bytes, edge.messages})
-      out.push_back(static_cast<std::int64_t>(number));
-  return array_of<std::int64_t>(std::move(out), {static_cast<py::ssize_t>(s.edges.size()), 4});
-}
-
-py::array_t<double> positions_of(const Snapshot& s) {
-  auto list = s.elements.position;
-  const auto n = static_cast<py::ssize_t>(list.size());
-  return array_of<double>(std::move(list), {n, 3});
+      edges.push_back(static_cast<std::int64_t>(number));
+  py::dict out;
+  out["loads"] = array_of(std::move(loads));
+  out["owners"] = pes_of(s.elements.pe);
+  out["movable"] = array_of<bool>(s.elements.migratable, {n});
+  out["sizes"] = array_of(s.elements.size_bytes);
+  out["speeds"] = array_of(s.pes.speed);
+  out["background"] = array_of(s.pes.background);
+  out["edges"] =
+      array_of<std::int64_t>(std::move(edges), {static_cast<py::ssize_t>(s.edges.size()), 4});
+  out["positions"] = array_of<double>(s.elements.position,
+                                      {static_cast<py::ssize_t>(s.elements.position.size()), 3});
+  return out;
 }
 
 /// Numbers per element or PE: those given, or `otherwise` for each.
@@ -79,8 +78,8 @@ Snapshot make_snapshot(const py::handle& loads, const py::handle& owners, std::i
                        const py::handle& speeds, const py::handle& background,
                        const py::handle& sizes, const py::handle& edges,
                        const py::handle& positions) {
-  if (n_pes < 1)
-    fail(ErrorCode::bad_argument, "n_pes: ", n_pes, " is no number of PEs; give 1 or more");
+  if (n_pes < 1 || n_pes > 1 << 24)
+    fail(ErrorCode::bad_argument, "n_pes: ", n_pes, " is not a number of PEs from 1 to ", 1 << 24);
   Snapshot s;
   const Doubles seconds = doubles(loads, "loads", {-1}, "(n,), seconds of each element");
   const auto n = static_cast<std::size_t>(seconds.size());
@@ -125,27 +124,27 @@ Snapshot make_snapshot(const py::handle& loads, const py::handle& owners, std::i
   return s;
 }
 
-py::array_t<std::int32_t> assign(const py::object& self, const py::object& strategy,
+/// `strategy`: a name, or a function without arguments, of Python.
+py::array_t<std::int32_t> assign(const Snapshot& s, const py::object& strategy,
                                  std::uint64_t seed) {
-  const auto& s = self.cast<const Snapshot&>();
-  Assignment chosen;
-  if (py::isinstance<py::str>(strategy)) {
-    const auto name = strategy.cast<std::string>();
-    const Strategy run = make_strategy(name, seed);
-    if (const std::string why = obstacle(name, s); !why.empty())
-      fail(ErrorCode::bad_argument, "strategy ", name, ": ", why, "; choose another one");
-    const py::gil_scoped_release others_run;
-    chosen = run(s);
-  } else {
+  if (!py::isinstance<py::str>(strategy)) {
     if (PyCallable_Check(strategy.ptr()) == 0)
       fail(ErrorCode::bad_argument, "strategy: ", std::string(py::str(py::type::of(strategy))),
            " is no name and no function; see strategies()");
-    // The function sees the snapshot of Python, so that it is the same object.
-    chosen = make_strategy([&](const Snapshot& /*same*/) {
-      return assignment_of(strategy(self), "PEs of the strategy", s.elements.size(), s.pes.size());
-    })(s);
+    return pes_of(make_strategy([&](const Snapshot&) {
+      return assignment_of(strategy(), "PEs of the strategy", s.elements.size(), s.pes.size());
+    })(s));
   }
-  return array_from<std::int32_t>(chosen, number_of);
+  const auto name = strategy.cast<std::string>();
+  const Strategy run = make_strategy(name, seed);
+  if (const std::string why = obstacle(name, s); !why.empty())
+    fail(ErrorCode::bad_argument, "strategy ", name, ": ", why, "; choose another one");
+  Assignment chosen;
+  {
+    const py::gil_scoped_release others_run;
+    chosen = run(s);
+  }
+  return pes_of(chosen);
 }
 
 py::dict evaluate(const Snapshot& s, const py::handle& owners) {
@@ -159,10 +158,9 @@ py::dict evaluate(const Snapshot& s, const py::handle& owners) {
   return out;
 }
 
-py::list read(const std::vector<std::string>& paths) {
-  py::list out;
-  for (Phase& phase : read_lb_datafiles(paths))
-    out.append(py::make_tuple(phase.id, std::move(phase.snapshot), phase.n_left_out));
+std::vector<Snapshot> read(const std::vector<std::string>& paths) {
+  std::vector<Snapshot> out;
+  for (Phase& phase : read_lb_datafiles(paths)) out.push_back(std::move(phase.snapshot));
   return out;
 }
 
@@ -179,29 +177,8 @@ void write(const std::string& path, const std::vector<Snapshot>& snapshots) {
 }  // namespace
 
 void add_balance(py::module_& module) {
-  py::class_<Snapshot>(module, "Snapshot")
-      .def(py::init(&make_snapshot))
-      .def_property_readonly("n_elements", [](const Snapshot& s) { return s.elements.size(); })
-      .def_property_readonly("n_pes", [](const Snapshot& s) { return s.pes.size(); })
-      .def_property_readonly("loads", &loads_of)
-      .def_property_readonly(
-          "owners",
-          [](const Snapshot& s) { return array_from<std::int32_t>(s.elements.pe, number_of); })
-      .def_property_readonly("movable",
-                             [](const Snapshot& s) {
-                               const auto n = static_cast<py::ssize_t>(s.elements.size());
-                               return array_of<bool>(s.elements.migratable, {n});
-                             })
-      .def_property_readonly(
-          "sizes",
-          [](const Snapshot& s) { return array_from<std::int64_t>(s.elements.size_bytes, itself); })
-      .def_property_readonly(
-          "speeds", [](const Snapshot& s) { return array_from<double>(s.pes.speed, itself); })
-      .def_property_readonly(
-          "background",
-          [](const Snapshot& s) { return array_from<double>(s.pes.background, itself); })
-      .def_property_readonly("edges", &edges_of)
-      .def_property_readonly("positions", &positions_of);
+  py::class_<Snapshot>(module, "Snapshot").def(py::init(&make_snapshot));
+  module.def("arrays", &arrays_of);
   module.def("assign", &assign);
   module.def("evaluate", &evaluate);
   module.def("strategies", &strategy_names);

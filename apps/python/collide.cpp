@@ -8,6 +8,7 @@
 #include "collide/triangle.hpp"
 
 #include <cmath>
+#include <variant>
 
 namespace tessera_python {
 namespace {
@@ -35,7 +36,7 @@ auto with_objects(const Doubles& array, std::string_view name, const F& f) {
   if (has_rows(array, {4})) return f(rows<Sphere>(array));
   if (has_rows(array, {2, 3})) return f(rows<Segment>(array));
   if (has_rows(array, {3})) return f(rows<Point>(array));
-  fail(ErrorCode::bad_value, name, ": its shape is ", text_of(array), ", and the shape is ",
+  fail(ErrorCode::bad_value, name, ": its shape is ", text_of(array), "; expected ",
        layouts);
 }
 
@@ -70,52 +71,23 @@ py::array pairs_of(const py::handle& given, const py::handle& others, bool touch
   return array_of<std::uint32_t>(std::move(found), {n, 2});
 }
 
-/// An Index of objects of any type.
-class AnyIndex {
- public:
-  AnyIndex() = default;
-  AnyIndex(const AnyIndex&) = delete;
-  AnyIndex& operator=(const AnyIndex&) = delete;
-  virtual ~AnyIndex() = default;
-
-  [[nodiscard]] virtual std::size_t size() const = 0;
-  [[nodiscard]] virtual std::vector<std::uint32_t> within(const Point& p, double radius) const = 0;
-  [[nodiscard]] virtual std::vector<Neighbour> nearest(const Point& p, std::size_t k) const = 0;
-  [[nodiscard]] virtual std::optional<RayHit> first_hit(const Ray& ray) const = 0;
+/// An Index of objects of a type that is known at run time.
+struct AnyIndex {
+  std::variant<Index<Aabb>, Index<Triangle>, Index<Tetrahedron>, Index<Sphere>, Index<Segment>,
+               Index<Point>>
+      of;
 };
 
-template <class T>
-class IndexOf final : public AnyIndex {
- public:
-  explicit IndexOf(std::span<const T> objects) : index_(objects) {}
-  [[nodiscard]] std::size_t size() const override { return index_.size(); }
-  [[nodiscard]] std::vector<std::uint32_t> within(const Point& p, double radius) const override {
-    return index_.within(p, radius);
-  }
-  [[nodiscard]] std::vector<Neighbour> nearest(const Point& p, std::size_t k) const override {
-    return index_.nearest(p, k);
-  }
-  [[nodiscard]] std::optional<RayHit> first_hit(const Ray& ray) const override {
-    if constexpr (requires(const T& object) { hit(object, ray); })
-      return index_.first_hit(ray);
-    else
-      fail(
-          ErrorCode::bad_argument,
-          "ray(): no ray hits points or segments; make an Index of boxes, triangles, tetrahedra or "
-          "balls");
-  }
-
- private:
-  Index<T> index_;
-};
-
-std::unique_ptr<AnyIndex> make_index(const py::handle& given) {
+AnyIndex make_index(const py::handle& given) {
   const Doubles array = objects_of(given, "objects");
-  return with_objects(array, "objects",
-                      []<class T>(std::span<const T> objects) -> std::unique_ptr<AnyIndex> {
-                        const py::gil_scoped_release others_run;
-                        return std::make_unique<IndexOf<T>>(objects);
-                      });
+  return with_objects(array, "objects", []<class T>(std::span<const T> objects) {
+    const py::gil_scoped_release others_run;
+    return AnyIndex{Index<T>(objects)};
+  });
+}
+
+std::size_t size_of(const AnyIndex& index) {
+  return std::visit([](const auto& of) { return of.size(); }, index.of);
 }
 
 Doubles queries_of(const py::handle& given, std::string_view name) {
@@ -135,11 +107,15 @@ py::tuple within(const AnyIndex& index, const py::handle& given, const py::handl
   std::vector<std::uint32_t> found;
   {
     const py::gil_scoped_release others_run;
-    for (std::size_t i = 0; i < all.size(); ++i) {
-      const std::vector<std::uint32_t> here = index.within(all[i], radii.data()[i]);
-      found.insert(found.end(), here.begin(), here.end());
-      begin.push_back(static_cast<std::int64_t>(found.size()));
-    }
+    std::visit(
+        [&](const auto& of) {
+          for (std::size_t i = 0; i < all.size(); ++i) {
+            const std::vector<std::uint32_t> here = of.within(all[i], radii.data()[i]);
+            found.insert(found.end(), here.begin(), here.end());
+            begin.push_back(static_cast<std::int64_t>(found.size()));
+          }
+        },
+        index.of);
   }
   return py::make_tuple(array_of(std::move(begin)), array_of(std::move(found)));
 }
@@ -148,18 +124,21 @@ py::tuple nearest(const AnyIndex& index, const py::handle& given, std::int64_t k
   if (k < 1) fail(ErrorCode::bad_argument, "k: ", k, " is not a number of objects; give 1 or more");
   const Doubles points = queries_of(given, "points");
   const std::span<const Point> all = rows<Point>(points);
-  const std::size_t n = std::min(static_cast<std::size_t>(k), index.size());
+  const std::size_t n = std::min(static_cast<std::size_t>(k), size_of(index));
   std::vector<std::int64_t> objects(all.size() * n);
   std::vector<double> distances(all.size() * n);
   {
     const py::gil_scoped_release others_run;
-    for (std::size_t i = 0; i < all.size(); ++i) {
-      std::size_t at = i * n;
-      for (const Neighbour& neighbour : index.nearest(all[i], n)) {
-        objects[at] = neighbour.object;
-        distances[at++] = std::sqrt(neighbour.distance2);
-      }
-    }
+    std::visit(
+        [&](const auto& of) {
+          std::size_t at = 0;
+          for (const Point& point : all)
+            for (const Neighbour& neighbour : of.nearest(point, n)) {
+              objects[at] = neighbour.object;
+              distances[at++] = std::sqrt(neighbour.distance2);
+            }
+        },
+        index.of);
   }
   const Shape shape{static_cast<py::ssize_t>(all.size()), static_cast<py::ssize_t>(n)};
   return py::make_tuple(array_of<std::int64_t>(std::move(objects), shape),
@@ -176,11 +155,21 @@ py::tuple ray(const AnyIndex& index, const py::handle& origins, const py::handle
   std::vector<double> at(starts.size(), HUGE_VAL);
   {
     const py::gil_scoped_release others_run;
-    for (std::size_t i = 0; i < starts.size(); ++i)
-      if (const auto hit = index.first_hit({starts[i], ways[i]})) {
-        objects[i] = hit->object;
-        at[i] = hit->at;
-      }
+    std::visit(
+        [&]<class T>(const Index<T>& of) {
+          if constexpr (requires(const T& object, const Ray& one) { hit(object, one); }) {
+            for (std::size_t i = 0; i < starts.size(); ++i)
+              if (const auto first = of.first_hit({starts[i], ways[i]})) {
+                objects[i] = first->object;
+                at[i] = first->at;
+              }
+          } else {
+            fail(ErrorCode::bad_argument,
+                 "ray(): no ray hits points or segments; make an Index of boxes, triangles, "
+                 "tetrahedra or balls");
+          }
+        },
+        index.of);
   }
   return py::make_tuple(array_of(std::move(objects)), array_of(std::move(at)));
 }
@@ -191,7 +180,7 @@ void add_collide(py::module_& module) {
   module.def("pairs", &pairs_of);
   py::class_<AnyIndex>(module, "Index")
       .def(py::init(&make_index))
-      .def("__len__", &AnyIndex::size)
+      .def("__len__", &size_of)
       .def("within", &within)
       .def("nearest", &nearest)
       .def("ray", &ray);

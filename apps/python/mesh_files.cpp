@@ -115,7 +115,7 @@ TetMesh mesh_of(const py::handle& points, const py::handle& cells, const std::st
   const Integers corners = indices(cells, of_cells, {-1, -1}, layout, all.size(), "points");
   const py::ssize_t n = corners.shape(1);
   if (n < 2 || n > 4)
-    fail(ErrorCode::bad_value, of_cells, ": its shape is ", text_of(corners), ", and the shape is ",
+    fail(ErrorCode::bad_value, of_cells, ": its shape is ", text_of(corners), "; expected ",
          layout);
   mesh.dimension = static_cast<std::int32_t>(n) - 1;
   mesh.tets.resize(static_cast<std::size_t>(corners.shape(0)));

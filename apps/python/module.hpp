@@ -10,6 +10,5 @@ void add_mesh_files(pybind11::module_& module);
 void add_collide(pybind11::module_& module);
 void add_balance(pybind11::module_& module);
 void add_sdf(pybind11::module_& module);
-void add_canvas(pybind11::module_& module);
 
 }  // namespace tessera_python

@@ -258,23 +258,15 @@ Doubles apply_weights(const WeightMatrix& matrix, const py::object& field, doubl
 
 void add_transfer(py::module_& module) {
   py::class_<WeightMatrix>(module, "Weights")
-      .def_property_readonly("n_rows", &WeightMatrix::n_rows)
-      .def_readonly("n_columns", &WeightMatrix::n_columns)
-      .def_property_readonly("data",
-                             [](const py::object& self) {
-                               const auto& rows = self.cast<const WeightMatrix&>().rows;
-                               return view_of<double>(rows.weights, self);
-                             })
-      .def_property_readonly("indices",
-                             [](const py::object& self) {
-                               const auto& rows = self.cast<const WeightMatrix&>().rows;
-                               return view_of<VertexId>(rows.columns, self);
-                             })
-      .def_property_readonly("indptr",
-                             [](const py::object& self) {
-                               const auto& rows = self.cast<const WeightMatrix&>().rows;
-                               return view_of<std::uint64_t>(rows.begin, self);
-                             })
+      .def("csr",
+           [](const py::object& self) {
+             const auto& matrix = self.cast<const WeightMatrix&>();
+             return py::make_tuple(
+                 view_of<double>(matrix.rows.weights, self),
+                 view_of<VertexId>(matrix.rows.columns, self),
+                 view_of<std::uint64_t>(matrix.rows.begin, self).attr("astype")("int64"),
+                 py::make_tuple(matrix.n_rows(), matrix.n_columns));
+           })
       .def("apply", &apply_weights);
   module.def("transfer", [](const py::object& source_points, const py::object& source_tets,
                             const py::list& fields, const py::object& target_points,

@@ -17,11 +17,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import _tessera, balance, collide, sdf
+from . import _tessera, balance, collide, plot, sdf
 from ._tessera import Error
 
-__all__ = ["Coupling", "Error", "Mesh", "Status", "TransferResult", "balance", "collide", "read_mesh",
-           "sdf", "transfer", "write_mesh"]
+__all__ = ["Coupling", "Error", "KINDS", "Mesh", "Status", "TransferResult", "balance", "collide",
+           "plot", "read_mesh", "sdf", "transfer", "write_mesh"]
 
 KINDS = ("linear", "second-order", "limited", "nearest", "projection", "moving-least-squares",
          "conservative", "conservative-bounded", "conservative-lumped")
@@ -36,10 +36,15 @@ class Status(enum.IntEnum):
     OUTSIDE = 3   #: in no cell: `outside` decides the value
 
 
-def _policy(kind: str, outside: str | float | None) -> str:
+def _policy(kind: str, outside: str | float | None) -> tuple[str, float]:
+    """In the words of the library, and the value of points without a donor."""
     if outside is None:
-        return "keep" if kind.startswith("conservative") else "nearest"
-    return outside if isinstance(outside, str) else f"value:{float(outside)!r}"
+        outside = "keep" if kind.startswith("conservative") else "nearest"
+    if not isinstance(outside, str):
+        return f"value:{float(outside)!r}", float(outside)
+    if outside not in ("nearest", "keep"):
+        raise Error(f"outside: {outside!r} is unknown; give 'nearest', 'keep' or a number")
+    return outside, np.nan
 
 
 class Coupling:
@@ -64,9 +69,9 @@ class Coupling:
                  target_tets: ArrayLike | None = None, tolerance: float = 0.0, order: int = 1,
                  clamp: bool = False) -> None:
         self._meshes = (source_points, source_tets, target_points, target_tets)
-        self._options = (kind, _policy(kind, outside), tolerance, order, clamp)
+        policy, self._outside = _policy(kind, outside)
+        self._options = (kind, policy, tolerance, order, clamp)
         self._pes = pes
-        self._outside = outside if isinstance(outside, (int, float)) else np.nan
         has_matrix = not (clamp or kind == "limited" or kind.startswith("conservative"))
         _, self.status, self.distance, self._weights, self.notes = self._run([], None, has_matrix)
 
@@ -90,9 +95,7 @@ class Coupling:
         if self._weights is None:
             raise Error(f"kind {self._options[0]} has no weights: its values are limited, or solve a "
                         "system; choose linear or second-order, without clamp")
-        matrix = self._weights
-        return (matrix.data, matrix.indices, matrix.indptr.astype(np.int64),
-                (matrix.n_rows, matrix.n_columns))
+        return self._weights.csr()
 
     def weights(self) -> Any:
         """The same as a scipy.sparse.csr_matrix."""
@@ -105,7 +108,7 @@ class Coupling:
         return csr_matrix((data, indices, indptr), shape=shape)
 
 
-@dataclass
+@dataclass(repr=False)
 class TransferResult:
     """What transfer() returns. values: (k,) or (k, c) float64. status, distance, notes: as in Coupling.
     """
@@ -114,7 +117,11 @@ class TransferResult:
     status: NDArray[np.uint8]
     distance: NDArray[np.float64] | None
     notes: dict[str, int]
-    _arguments: tuple[tuple[Any, ...], dict[str, Any]] = field(repr=False)
+    _arguments: tuple[tuple[Any, ...], dict[str, Any]]
+
+    def __repr__(self) -> str:
+        counts = ", ".join(f"{int((self.status == s).sum())} {s.name.lower()}" for s in Status)
+        return f"TransferResult({len(self.status)} points: {counts})"
 
     @cached_property
     def donors(self) -> NDArray[np.int64]:
@@ -141,7 +148,7 @@ def transfer(source_points: ArrayLike, source_tets: ArrayLike | None, values: Ar
     options = {"target_tets": target_tets, "tolerance": tolerance, "order": order, "clamp": clamp}
     out, status, distance, _, notes = _tessera.transfer(
         source_points, source_tets, [values], target_points, target_tets, initial, kind,
-        _policy(kind, outside), tolerance, order, clamp, False, pes)
+        _policy(kind, outside)[0], tolerance, order, clamp, False, pes)
     return TransferResult(out[0], status, distance, notes, (search, options))
 
 

@@ -18,10 +18,32 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _tessera, plot
-from ._tessera import Snapshot
 
 __all__ = ["Comparison", "Evaluation", "Snapshot", "Strategy", "assign", "compare", "evaluate", "read",
            "snapshot", "strategies", "write"]
+
+
+class Snapshot:
+    """Loads of elements before a balance round. loads: (n,) seconds on a PE of speed 1, NaN if unknown.
+    owners: (n,) PEs. movable: (n,) bool. sizes: (n,) bytes. speeds: (n_pes,). background: (n_pes,)
+    seconds beside the elements. edges: (m, 4): from, to, bytes, messages. positions: (n, 3), or (0, 3)."""
+
+    loads: NDArray[np.float64]
+    owners: NDArray[np.int32]
+    movable: NDArray[np.bool_]
+    sizes: NDArray[np.uint64]
+    speeds: NDArray[np.float64]
+    background: NDArray[np.float64]
+    edges: NDArray[np.int64]
+    positions: NDArray[np.float64]
+
+    def __init__(self, handle: _tessera.Snapshot) -> None:
+        self._handle = handle
+        for name, array in _tessera.arrays(handle).items():
+            array.flags.writeable = False
+            setattr(self, name, array)
+        self.n_pes = len(self.speeds)
+
 
 Strategy = Union[str, Callable[[Snapshot], ArrayLike]]
 
@@ -40,21 +62,20 @@ class Evaluation:
 def snapshot(loads: ArrayLike, owners: ArrayLike, n_pes: int, *, speeds: ArrayLike | None = None,
              background: ArrayLike | None = None, sizes: ArrayLike | None = None, edges: ArrayLike | None = None,
              positions: ArrayLike | None = None) -> Snapshot:
-    """A snapshot from arrays. loads: (n,) seconds on a PE of speed 1, NaN if unknown. owners: (n,) PEs.
-    speeds: (n_pes,), 1 by default. background: (n_pes,) seconds beside the elements. sizes: (n,) bytes.
-    edges: (m, 4) int: from, to, bytes, messages. positions: (n, 3), for rcb and hilbert."""
-    return Snapshot(loads, owners, n_pes, speeds, background, sizes, edges, positions)
+    """A snapshot from arrays, which are those of Snapshot; speeds are 1 by default. Strategies rcb and
+    hilbert need positions."""
+    return Snapshot(_tessera.Snapshot(loads, owners, n_pes, speeds, background, sizes, edges, positions))
 
 
 def read(*paths: str | os.PathLike[str]) -> list[Snapshot]:
     """The phases of one run, in order, from all of its files: those of Tessera (lb_lab --save-snapshot),
     or of vt (one file per rank; .br is unpacked)."""
-    return [s for _, s, _ in _tessera.read_snapshots([os.fspath(path) for path in paths])]
+    return [Snapshot(handle) for handle in _tessera.read_snapshots([os.fspath(path) for path in paths])]
 
 
 def write(path: str | os.PathLike[str], snapshots: Sequence[Snapshot]) -> None:
     """Writes phases for read(), and for vt's tools; compressed if the path ends in .br."""
-    _tessera.write_snapshots(os.fspath(path), list(snapshots))
+    _tessera.write_snapshots(os.fspath(path), [s._handle for s in snapshots])
 
 
 def strategies() -> list[str]:
@@ -64,12 +85,13 @@ def strategies() -> list[str]:
 
 def assign(snapshot: Snapshot, strategy: Strategy, seed: int = 1) -> NDArray[np.int32]:
     """The new PE of each element, (n,). strategy: a name of strategies(), or a function."""
-    return _tessera.assign(snapshot, strategy, seed)
+    chosen = (lambda: strategy(snapshot)) if callable(strategy) else strategy
+    return _tessera.assign(snapshot._handle, chosen, seed)
 
 
 def evaluate(snapshot: Snapshot, owners: ArrayLike | None = None) -> Evaluation:
     """The quality of an assignment, (n,) int; of the present one without it."""
-    return Evaluation(**_tessera.evaluate(snapshot, snapshot.owners if owners is None else owners))
+    return Evaluation(**_tessera.evaluate(snapshot._handle, snapshot.owners if owners is None else owners))
 
 
 @dataclass(frozen=True)
@@ -96,6 +118,6 @@ def compare(snapshot: Snapshot, strategies: Sequence[Strategy], seed: int = 1) -
     """Runs strategies, names or functions, on one snapshot."""
     rows = {"before": evaluate(snapshot)}
     for strategy in strategies:
-        name = strategy if isinstance(strategy, str) else getattr(strategy, "__name__", "own")
+        name = strategy if isinstance(strategy, str) else getattr(strategy, "__name__", "own") + "()"
         rows[name] = evaluate(snapshot, assign(snapshot, strategy, seed))
     return Comparison(rows)
