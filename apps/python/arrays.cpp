@@ -17,7 +17,7 @@ py::array any_array(const py::handle& given, std::string_view name, std::string_
   const char kind = array.dtype().kind();
   if (array.size() != 0 && kinds.find(kind) == std::string_view::npos)
     fail(ErrorCode::bad_value, name, ": its dtype is ", std::string(py::str(array.dtype())),
-         ", and ", needed, " are needed; convert it with .astype()");
+         "; expected ", needed, "; convert it with .astype()");
   return array;
 }
 
@@ -28,8 +28,7 @@ void require_shape(const py::array& array, std::string_view name, const Shape& s
   for (std::size_t k = 0; fits && k < shape.size(); ++k)
     fits = shape[k] < 0 || array.shape(static_cast<py::ssize_t>(k)) == shape[k];
   if (!fits)
-    fail(ErrorCode::bad_value, name, ": its shape is ", text_of(array), "; expected ",
-         layout);
+    fail(ErrorCode::bad_value, name, ": its shape is ", text_of(array), "; expected ", layout);
 }
 
 /// "[5, 2]": where the i-th number stands.
@@ -90,8 +89,8 @@ Values values_of(const py::handle& given, std::string_view name, std::size_t n_r
   const bool is_flat = array.ndim() == 1;
   if ((!is_flat && array.ndim() != 2) || static_cast<std::size_t>(array.shape(0)) != n_rows ||
       (!is_flat && array.shape(1) == 0))
-    fail(ErrorCode::bad_value, name, ": its shape is ", text_of(array), ", and the shape is (",
-         n_rows, ",) or (", n_rows, ", c), a value or c values for each of the ", things);
+    fail(ErrorCode::bad_value, name, ": its shape is ", text_of(array), "; expected (", n_rows,
+         ",) or (", n_rows, ", c), a value or c values for each of the ", things);
   return {Doubles(array), is_flat ? 1 : static_cast<std::size_t>(array.shape(1)), is_flat};
 }
 

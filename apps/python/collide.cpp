@@ -36,8 +36,7 @@ auto with_objects(const Doubles& array, std::string_view name, const F& f) {
   if (has_rows(array, {4})) return f(rows<Sphere>(array));
   if (has_rows(array, {2, 3})) return f(rows<Segment>(array));
   if (has_rows(array, {3})) return f(rows<Point>(array));
-  fail(ErrorCode::bad_value, name, ": its shape is ", text_of(array), "; expected ",
-       layouts);
+  fail(ErrorCode::bad_value, name, ": its shape is ", text_of(array), "; expected ", layouts);
 }
 
 Doubles objects_of(const py::handle& given, std::string_view name) {
