@@ -118,7 +118,8 @@ class Threads(unittest.TestCase):
         cores, n = os.sched_getaffinity(0), len(os.listdir("/proc/self/task"))
         for _ in range(20):
             call()
-        self.assertEqual((os.sched_getaffinity(0), len(os.listdir("/proc/self/task"))), (cores, n))
+        self.assertEqual(os.sched_getaffinity(0), cores)
+        self.assertLessEqual(len(os.listdir("/proc/self/task")), n)
 
     def test_memory_does_not_grow(self):
         def resident():

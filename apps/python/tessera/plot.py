@@ -34,7 +34,7 @@ class _Canvas:
 
     def write(self, path: str | os.PathLike[str]) -> None:
         with open(path, "w", encoding="utf-8") as file:
-            file.write("\n".join(self._parts) + "\n</svg>\n")
+            file.write("".join(self._parts) + "</svg>\n")
 
 
 def bars(path: str | os.PathLike[str], title: str, names: Sequence[str],
@@ -49,7 +49,7 @@ def bars(path: str | os.PathLike[str], title: str, names: Sequence[str],
         for row, value in enumerate(values):
             width = 180 * value / most
             canvas.rect(left, 50 + 24 * row, width, 18, COLOURS[column % len(COLOURS)])
-            canvas.text(left + width + 5, 64 + 24 * row, f"{value:.4g}", font=11)
+            canvas.text(left + width + 5, 64 + 24 * row, f"{value:,.0f}" if value >= 1000 else f"{value:.4g}", font=11)
     canvas.write(path)
 
 
@@ -64,7 +64,7 @@ def lines(path: str | os.PathLike[str], title: str, x_label: str, x: Sequence[fl
     for tick in np.arange(low, high + 1):
         y = 290 - 250 * (tick - low) / (high - low)
         canvas.line([(60, y), (360, y)], "#dddddd", 1)
-        canvas.text(54, y + 4, f"{10 ** tick:g}", "end", 11)
+        canvas.text(54, y + 4, f"{10 ** tick:.{max(0, int(-tick))}f}", "end", 11)
     for at, value in zip(to_x, x):
         canvas.text(at, 306, f"{value:g}", "middle", 11)
     canvas.text(210, 326, x_label, "middle")
@@ -87,15 +87,17 @@ def boxes(path: str | os.PathLike[str], title: str, lo: ArrayLike, hi: ArrayLike
 
 
 def image(path: str | os.PathLike[str], title: str, values: ArrayLike) -> None:
-    """A slice (rows from below, columns): blue below 0, red above, darker further away; 0 is white."""
+    """A slice (rows from below, columns): blue below 0, red above, in ten steps, darker further away."""
     values = np.asarray(values, dtype=float)
     finite = np.where(np.isfinite(values), values, np.nan)
     most = np.nanmax(np.abs(finite)) or 1.0
     size = 400 / max(values.shape)
-    canvas = _Canvas(420, 450, f"{title} (white: 0, darkest: {most:.3g})")
-    for row, line in enumerate(finite[::-1]):
-        for column, value in enumerate(line):
-            far = int(230 * (1 - abs(value) / most)) if np.isfinite(value) else 230
-            colour = f"#{far:02x}{far:02x}ff" if value < 0 else f"#ff{far:02x}{far:02x}"
-            canvas.rect(10 + size * column, 40 + size * row, size + 0.3, size + 0.3, colour)
+    canvas = _Canvas(420, 450, f"{title} (darkest: {most:.3g})")
+    far = np.where(np.isnan(finite), 230, 230 - 23 * np.ceil(10 * np.abs(np.nan_to_num(finite)) / most)).astype(int)
+    for row, (line, is_below) in enumerate(zip(far[::-1], finite[::-1] < 0)):
+        ends = np.flatnonzero(np.diff(line * 2 + is_below, append=-1)) + 1  # of runs of one colour
+        for begin, end in zip([0, *ends[:-1]], ends):
+            level = f"{line[begin]:02x}"
+            canvas.rect(10 + size * begin, 40 + size * row, size * (end - begin), size + 0.3,
+                        f"#{level}{level}ff" if is_below[begin] else f"#ff{level}{level}")
     canvas.write(path)
