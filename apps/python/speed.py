@@ -13,6 +13,7 @@ import sys
 import tempfile
 import time
 
+del sys.path[0]  # beside this script stands the package without its extension
 import numpy as np
 import tessera
 
@@ -21,9 +22,13 @@ rng = np.random.default_rng(1)
 
 
 def seconds(call):
-    begin = time.perf_counter()
-    result = call()
-    return time.perf_counter() - begin, result
+    """(fastest of as many calls as fit into a fifth of a second, result)."""
+    best, end = np.inf, time.perf_counter() + 0.2
+    while best == np.inf or time.perf_counter() < end:
+        begin = time.perf_counter()
+        result = call()
+        best = min(best, time.perf_counter() - begin)
+    return best, result
 
 
 def race(what, ours, peer_name, peer, same):
@@ -70,7 +75,7 @@ with tempfile.TemporaryDirectory() as folder:
     boxes.tofile(path)
 
     def pairs_in_cpp():
-        took, n = program("python_pairs_speed", path, "3").split()
+        took, n = program("python_pairs_speed", path, "10").split()
         return float(took), int(n)
 
     race("pairs of 100000 boxes", lambda: tessera.collide.pairs(boxes), "the library in C++", pairs_in_cpp,
