@@ -6,7 +6,6 @@
 #include <cmath>
 #include <fstream>
 #include <limits>
-#include <pybind11/stl.h>
 
 namespace tessera_python {
 namespace {
@@ -39,87 +38,34 @@ py::dict arrays_of(const Snapshot& s) {
   out["sizes"] = array_of(s.elements.size_bytes);
   out["speeds"] = array_of(s.pes.speed);
   out["background"] = array_of(s.pes.background);
-  out["edges"] =
-      array_of<std::int64_t>(std::move(edges), {static_cast<py::ssize_t>(s.edges.size()), 4});
-  out["positions"] = array_of<double>(s.elements.position,
-                                      {static_cast<py::ssize_t>(s.elements.position.size()), 3});
+  out["edges"] = matrix_of<std::int64_t>(std::move(edges), 4);
+  out["positions"] = matrix_of<double>(s.elements.position);
   return out;
 }
 
-/// Numbers per element or PE: those given, or `otherwise` for each.
-std::vector<double> column(const py::handle& given, const char* name, std::size_t n,
-                           double otherwise, const char* things) {
-  if (given.is_none()) return std::vector<double>(n, otherwise);
-  const Doubles array = doubles(given, name, {static_cast<py::ssize_t>(n)},
-                                tess::text("(", n, ",), one per ", things));
-  require_finite(array, name);
-  return {array.data(), array.data() + n};
-}
-
-std::uint64_t whole(double number, const char* name, std::size_t i) {
-  if (!(number >= 0 && number < 0x1p53 && number == std::floor(number)))
-    fail(ErrorCode::bad_value, name, "[", i, "] is ", number,
-         "; give a whole number of bytes or messages, from 0 on");
-  return static_cast<std::uint64_t>(number);
-}
-
-Assignment assignment_of(const py::handle& given, const char* name, std::size_t n_elements,
-                         std::size_t n_pes) {
-  const Integers pes = indices(given, name, {static_cast<py::ssize_t>(n_elements)},
-                               tess::text("(", n_elements, ",), a PE per element"), n_pes, "PEs");
+Assignment assignment_of(const Array<std::int32_t>& pes) {
   Assignment out;
-  out.reserve(n_elements);
-  for (std::size_t i = 0; i < n_elements; ++i)
-    out.push_back(pe_at(static_cast<std::size_t>(pes.data()[i])));
+  for (const std::int32_t pe : rows<std::int32_t>(pes)) out.push_back(tess::PeId{pe});
   return out;
 }
 
-Snapshot make_snapshot(const py::handle& loads, const py::handle& owners, std::int64_t n_pes,
-                       const py::handle& speeds, const py::handle& background,
-                       const py::handle& sizes, const py::handle& edges,
-                       const py::handle& positions) {
-  if (n_pes < 1 || n_pes > 1 << 24)
-    fail(ErrorCode::bad_argument, "n_pes: ", n_pes, " is not a number of PEs from 1 to ", 1 << 24);
+Snapshot make_snapshot(const Array<double>& loads, const Array<std::int32_t>& owners,
+                       const std::vector<double>& speeds, const std::vector<double>& background,
+                       const std::vector<std::uint64_t>& sizes, const Array<std::int64_t>& edges,
+                       const Array<double>& positions) {
   Snapshot s;
-  const Doubles seconds = doubles(loads, "loads", {-1}, "(n,), seconds of each element");
-  const auto n = static_cast<std::size_t>(seconds.size());
-  const auto pes = static_cast<std::size_t>(n_pes);
-  for (std::size_t i = 0; i < n; ++i) {
-    const double load = seconds.data()[i];
-    if (!std::isnan(load) && !(load >= 0 && load < HUGE_VAL))
-      fail(ErrorCode::bad_value, "loads[", i, "] is ", load,
-           "; give seconds from 0 on, or NaN where the load is unknown");
+  for (const double load : rows<double>(loads)) {
+    s.elements.key.push_back({{}, s.elements.load.size()});
     s.elements.load.push_back(std::isnan(load) ? Load::unknown() : Load(load));
-    s.elements.key.push_back({{}, i});
   }
-  s.elements.pe = assignment_of(owners, "owners", n, pes);
-  s.elements.migratable.assign(n, 1);
-  const std::vector<double> bytes = column(sizes, "sizes", n, 0, "element");
-  for (std::size_t i = 0; i < n; ++i) s.elements.size_bytes.push_back(whole(bytes[i], "sizes", i));
-  s.elements.memory_bytes = s.elements.size_bytes;
-  s.pes.speed = column(speeds, "speeds", pes, 1, "PE");
-  s.pes.background = column(background, "background", pes, 0, "PE");
-  s.pes.memory_limit_bytes.assign(pes, 0);
-  if (!positions.is_none()) {
-    const Doubles at = doubles(positions, "positions", {static_cast<py::ssize_t>(n), 3},
-                               "(n, 3), x, y, z of each element");
-    require_finite(at, "positions");
-    const auto all = rows<std::array<double, 3>>(at);
-    s.elements.position.assign(all.begin(), all.end());
-  }
-  if (!edges.is_none()) {
-    const Integers all = indices(edges, "edges", {-1, 4}, "(m, 4): from, to, bytes, messages",
-                                 std::size_t{1} << 53U, "bytes at most");
-    for (py::ssize_t i = 0; i < all.shape(0); ++i) {
-      const std::int64_t* const edge = all.data(i, 0);
-      for (int end = 0; end < 2; ++end)
-        if (static_cast<std::size_t>(edge[end]) >= n)
-          fail(ErrorCode::out_of_range, "edges[", i, ", ", end, "] is ", edge[end],
-               ", and there are ", n, " elements, numbered from 0 on");
-      s.edges.push_back({static_cast<std::size_t>(edge[0]), static_cast<std::size_t>(edge[1]),
-                         static_cast<std::uint64_t>(edge[2]), static_cast<std::uint64_t>(edge[3])});
-    }
-  }
+  s.elements.pe = assignment_of(owners);
+  s.elements.migratable.assign(s.elements.size(), 1);
+  s.elements.size_bytes = s.elements.memory_bytes = sizes;
+  const auto places = rows<std::array<double, 3>>(positions);
+  s.elements.position.assign(places.begin(), places.end());
+  s.pes = {background, speeds, std::vector<std::uint64_t>(speeds.size(), 0), {}};
+  for (const auto& [from, to, bytes, messages] : rows<std::array<std::uint64_t, 4>>(edges))
+    s.edges.push_back({from, to, bytes, messages});
   validate(s);
   return s;
 }
@@ -128,12 +74,8 @@ Snapshot make_snapshot(const py::handle& loads, const py::handle& owners, std::i
 py::array_t<std::int32_t> assign(const Snapshot& s, const py::object& strategy,
                                  std::uint64_t seed) {
   if (!py::isinstance<py::str>(strategy)) {
-    if (PyCallable_Check(strategy.ptr()) == 0)
-      fail(ErrorCode::bad_argument, "strategy: ", std::string(py::str(py::type::of(strategy))),
-           " is no name and no function; see strategies()");
-    return pes_of(make_strategy([&](const Snapshot&) {
-      return assignment_of(strategy(), "PEs of the strategy", s.elements.size(), s.pes.size());
-    })(s));
+    return pes_of(make_strategy(
+        [&](const Snapshot&) { return assignment_of(strategy().cast<Array<std::int32_t>>()); })(s));
   }
   const auto name = strategy.cast<std::string>();
   const Strategy run = make_strategy(name, seed);
@@ -147,15 +89,10 @@ py::array_t<std::int32_t> assign(const Snapshot& s, const py::object& strategy,
   return pes_of(chosen);
 }
 
-py::dict evaluate(const Snapshot& s, const py::handle& owners) {
-  const Metrics metrics =
-      measure(s, assignment_of(owners, "owners", s.elements.size(), s.pes.size()));
-  py::dict out;
-  out["imbalance"] = metrics.max_over_average;
-  out["moves"] = metrics.n_moves;
-  out["moved_bytes"] = metrics.moved_bytes;
-  out["external_bytes"] = metrics.external_bytes;
-  return out;
+py::tuple evaluate(const Snapshot& s, const Array<std::int32_t>& owners) {
+  const Metrics metrics = measure(s, assignment_of(owners));
+  return py::make_tuple(metrics.max_over_average, metrics.n_moves, metrics.moved_bytes,
+                        metrics.external_bytes);
 }
 
 std::vector<Snapshot> read(const std::vector<std::string>& paths) {

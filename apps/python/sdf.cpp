@@ -15,33 +15,15 @@ using namespace tess::dn;
 using tess::ErrorCode;
 using tess::fail;
 
-Surface surface_of(const py::handle& points, const py::handle& triangles) {
-  const Doubles given = doubles(points, "points", {-1, 3}, "(n, 3), x, y, z of each point");
-  require_finite(given, "points");
-  const std::span<const Vec3> all = rows<Vec3>(given);
-  const Integers corners = indices(triangles, "triangles", {-1, 3},
-                                   "(m, 3), the points of each triangle", all.size(), "points");
-  Surface surface;
-  surface.vertices.assign(all.begin(), all.end());
-  surface.triangles.resize(static_cast<std::size_t>(corners.shape(0)));
-  const std::int64_t* corner = corners.data();
-  for (auto& triangle : surface.triangles)
-    for (auto& vertex : triangle) vertex = static_cast<std::uint32_t>(*corner++);
-  return surface;
-}
-
-/// The corners of triangles, (m, 3, 3), for searches of pairs.
-py::array corners(const py::handle& points, const py::handle& triangles) {
-  const Surface surface = surface_of(points, triangles);
-  std::vector<std::array<Vec3, 3>> out;
-  for (std::size_t t = 0; t < surface.triangles.size(); ++t) out.push_back(surface.corners(t));
-  const auto n = static_cast<py::ssize_t>(out.size());
-  return array_of<double>(std::move(out), {n, 3, 3});
+Surface surface_of(const Array<double>& points, const Array<std::uint32_t>& triangles) {
+  const auto vertices = rows<Vec3>(points);
+  const auto corners = rows<std::array<std::uint32_t, 3>>(triangles);
+  return {{vertices.begin(), vertices.end()}, {corners.begin(), corners.end()}};
 }
 
 /// `thickness` is infinite, and `margin` is negative, where they are not given.
-Field build(const py::handle& points, const py::handle& triangles, int n, double margin,
-            double thickness, bool two_sided) {
+Field build(const Array<double>& points, const Array<std::uint32_t>& triangles, int n,
+            double margin, double thickness, bool two_sided) {
   const Surface given = surface_of(points, triangles);
   const py::gil_scoped_release others_run;
   validate(given);
@@ -63,11 +45,9 @@ LookUp kind_of(const std::string& name) {
 }
 
 /// Samples in blocks, whose coordinates are turned into columns of floats.
-py::tuple sample(const Field& field, const py::handle& given, const std::string& kind_name) {
+py::tuple sample(const Field& field, const Array<double>& points, const std::string& kind_name) {
   const LookUp kind = kind_of(kind_name);
-  const Doubles points = doubles(given, "points", {-1, 3}, "(m, 3), x, y, z of each point");
   const std::span<const Vec3> all = rows<Vec3>(points);
-  require_finite(points, "points");
   std::vector<double> distance(all.size()), normal(3 * all.size());
   {
     const py::gil_scoped_release others_run;
@@ -96,10 +76,8 @@ py::tuple sample(const Field& field, const py::handle& given, const std::string&
 
 py::tuple read(const std::string& path) {
   Surface surface = read_surface(path);
-  const auto n = static_cast<py::ssize_t>(surface.vertices.size());
-  const auto n_triangles = static_cast<py::ssize_t>(surface.triangles.size());
-  return py::make_tuple(array_of<double>(std::move(surface.vertices), {n, 3}),
-                        array_of<std::uint32_t>(std::move(surface.triangles), {n_triangles, 3}));
+  return py::make_tuple(matrix_of<double>(std::move(surface.vertices)),
+                        matrix_of<std::uint32_t>(std::move(surface.triangles)));
 }
 
 }  // namespace
@@ -120,7 +98,6 @@ void add_sdf(py::module_& module) {
         return py::make_tuple(py::make_tuple(box.low.x, box.low.y, box.low.z),
                               py::make_tuple(box.high.x, box.high.y, box.high.z));
       });
-  module.def("corners", &corners);
   module.def("load_field", &load_field);
   module.def("read_surface", &read);
 }

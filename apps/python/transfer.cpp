@@ -1,15 +1,12 @@
 // Fields from mesh to mesh. The meshes are cut into patches, chares that refer to the job in the
 // memory of the interpreter: they read its values there, and write theirs there, each row once.
-#include "apps/python/mesh.hpp"
+#include "apps/python/arrays.hpp"
 #include "apps/python/module.hpp"
 #include "m2m/coupling_weights.hpp"
 #include "m2m/mesh_parts.hpp"
 #include "m2m/policy.hpp"
 #include "runtime/core/hilbert.hpp"
 #include "runtime/more/hosted.hpp"
-
-#include <numeric>
-#include <pybind11/stl.h>
 
 namespace tessera_python {
 namespace {
@@ -41,10 +38,6 @@ Job* job = nullptr;
 
 std::size_t position(tess::m2m::GlobalId id) {
   return static_cast<std::size_t>(id);
-}
-
-std::span<double> span_of(Doubles& array) {
-  return {array.mutable_data(), static_cast<std::size_t>(array.size())};
 }
 
 /// A part of a mesh of the job.
@@ -154,28 +147,25 @@ std::vector<MeshPart> cloud_parts(std::span<const Point> points, std::size_t n_p
   return parts;
 }
 
-struct Request {
-  std::string kind, outside;
-  double tolerance;
-  std::int32_t order;
-  bool clamp, weights;
-  std::int32_t pes;
-};
+/// Kind, outside, tolerance, order, clamp.
+using Options = std::tuple<std::string, std::string, double, std::int32_t, bool>;
 
-CouplingOptions options_of(const Request& request, const TetMesh& source, const TetMesh& target) {
+CouplingOptions options_of(const Options& given, bool wants_weights, const TetMesh& source,
+                           const TetMesh& target) {
   CouplingOptions options;
-  options.kind = parse_transfer_kind(request.kind);
-  options.policy = parse_policy(request.outside);
-  options.tolerance = request.tolerance;
-  options.order = request.order;
-  options.clamp = request.clamp;
+  options.kind = parse_transfer_kind(std::get<0>(given));
+  options.policy = parse_policy(std::get<1>(given));
+  std::tie(std::ignore, std::ignore, options.tolerance, options.order, options.clamp) = given;
   check(options);
-  if (request.weights) require_weights(options.kind, options.clamp);
+  if (wants_weights) require_weights(options.kind, options.clamp);
   const TransferKind kind = options.kind;
   if (kind == TransferKind::native)
     fail(ErrorCode::bad_argument,
          "kind native needs the elements of a file, which arrays of tetrahedra do not have: choose "
          "linear, or the program m2m_transfer");
+  if (source.points.empty())
+    fail(ErrorCode::bad_value,
+         "source_points: there are none, so no value can be moved; give some");
   if (source.tets.empty() && kind != TransferKind::nearest &&
       kind != TransferKind::moving_least_squares)
     fail(ErrorCode::bad_argument, "kind ", name_of(kind),
@@ -183,11 +173,7 @@ CouplingOptions options_of(const Request& request, const TetMesh& source, const 
   if (is_conservative(kind) && target.tets.empty())
     fail(ErrorCode::bad_argument, "kind ", name_of(kind),
          " integrates over cells of the target: give target_tets");
-  if (source.points.empty())
-    fail(ErrorCode::bad_value,
-         "source_points: there are none, so no value can be moved; give some");
-  require_dimensions(kind, options.tolerance, source.tets.empty() ? 3 : source.dimension,
-                     target.tets.empty() ? 3 : target.dimension);
+  require_dimensions(kind, options.tolerance, source.dimension, target.dimension);
   return options;
 }
 
@@ -200,34 +186,29 @@ std::vector<MeshPart> parts_of(const TetMesh& mesh, std::int32_t halo_layers, bo
                     PartitionMethod::curve, halo_layers);
 }
 
-py::tuple transfer(const py::object& source_points, const py::object& source_tets,
-                   const py::list& fields, const py::object& target_points,
-                   const py::object& target_tets, const py::object& kept, const Request& request) {
-  const TetMesh source = mesh_of(source_points, source_tets, "source");
-  const TetMesh target = mesh_of(target_points, target_tets, "target");
+/// `fields`: (n, …) each; `results`: (k, …) each, with what points without a donor keep.
+py::tuple transfer(const MeshArrays& from, const MeshArrays& to,
+                   const std::vector<Array<double>>& fields, std::vector<Array<double>> results,
+                   const Options& options, bool wants_weights, std::int32_t pes) {
+  const TetMesh source = mesh_of(from, "source"), target = mesh_of(to, "target");
   Job of;
-  of.options = options_of(request, source, target);
-  of.wants_weights = request.weights;
+  of.options = options_of(options, wants_weights, source, target);
+  of.wants_weights = wants_weights;
   of.n_sources = static_cast<std::int64_t>(source.n_points());
   of.n_targets = static_cast<std::int64_t>(target.n_points());
-  std::vector<Values> given;
-  py::list results;
-  for (std::size_t k = 0; k < fields.size(); ++k) {
-    given.push_back(values_of(fields[k], "values", source.n_points(), "source points"));
-    Doubles room = given.back().room(target.n_points());
-    fill_kept(kept, given.back(), std::numeric_limits<double>::quiet_NaN(), room);
-    of.moves.push_back({given.back().span(), span_of(room), given.back().n_components});
-    results.append(room);
-  }
+  for (std::size_t k = 0; k < fields.size(); ++k)
+    of.moves.push_back({rows<double>(fields[k]),
+                        {results[k].mutable_data(), static_cast<std::size_t>(results[k].size())},
+                        static_cast<std::size_t>(fields[k].size()) / source.n_points()});
+  const bool conserves = is_conservative(of.options.kind);
   {
     const py::gil_scoped_release others_run;
-    const bool conserves = is_conservative(of.options.kind);
-    const std::size_t n_parts = 8 * static_cast<std::size_t>(std::clamp(request.pes, 1, 4096));
+    const std::size_t n_parts = 8 * static_cast<std::size_t>(std::clamp(pes, 1, 4096));
     of.source = parts_of(source, source_halo_layers(of.options.kind), source.tets.empty(), n_parts);
     of.target = parts_of(target, target_halo_layers(of.options.kind), !conserves, n_parts);
     of.status.assign(target.n_points(), static_cast<std::uint8_t>(Status::outside));
-    if (!conserves) of.distance.assign(target.n_points(), 0.0);
-    tess::run_hosted(request.pes, [&] { return work(of); });
+    of.distance.assign(target.n_points(), 0.0);
+    tess::run_hosted(pes, [&] { return work(of); });
   }
   const Tally& tally = of.summary.tally;
   py::dict notes;
@@ -235,47 +216,36 @@ py::tuple transfer(const py::object& source_points, const py::object& source_tet
   if (tally.n_lower_order != 0) notes["lower_order"] = tally.n_lower_order;
   if (tally.n_lower_dimension != 0) notes["lower_dimension"] = tally.n_lower_dimension;
   py::object distance = py::none();
-  if (!of.distance.empty() || target.points.empty()) distance = array_of(std::move(of.distance));
-  py::object weights = py::none();
-  if (of.weights) weights = py::cast(std::move(*of.weights));
-  return py::make_tuple(results, array_of(std::move(of.status)), distance, weights, notes);
+  if (!conserves) distance = array_of(std::move(of.distance));
+  return py::make_tuple(array_of(std::move(of.status)), distance, std::move(of.weights), notes);
 }
 
-Doubles apply_weights(const WeightMatrix& matrix, const py::object& field, double outside,
-                      const py::object& kept) {
-  const auto n_rows = static_cast<std::size_t>(matrix.n_rows());
-  const Values given =
-      values_of(field, "values", static_cast<std::size_t>(matrix.n_columns), "source points");
-  Doubles out = given.room(n_rows);
-  fill_kept(kept, given, outside, out);
-  const std::span<double> to = span_of(out);
+void apply_weights(const WeightMatrix& matrix, const Array<double>& field, Array<double> result) {
+  const auto n = static_cast<std::size_t>(field.size() / matrix.n_columns);
+  const std::span<double> to{result.mutable_data(), static_cast<std::size_t>(result.size())};
   const py::gil_scoped_release others_run;
-  apply(matrix, given.span(), given.n_components, to);
-  return out;
+  apply(matrix, rows<double>(field), n, to);
+}
+
+/// SciPy's (data, indices, indptr, shape); the arrays are views of the matrix.
+py::tuple csr(const py::object& self) {
+  const auto& matrix = self.cast<const WeightMatrix&>();
+  const Rows<double>& rows = matrix.rows;
+  const auto view = [&]<class T>(const std::vector<T>& list) {
+    py::array_t<T> array(static_cast<py::ssize_t>(list.size()), list.data(), self);
+    array.attr("flags").attr("writeable") = false;
+    return array;
+  };
+  return py::make_tuple(view(rows.weights), view(rows.columns),
+                        view(rows.begin).attr("astype")("int64"),
+                        py::make_tuple(matrix.n_rows(), matrix.n_columns));
 }
 
 }  // namespace
 
 void add_transfer(py::module_& module) {
-  py::class_<WeightMatrix>(module, "Weights")
-      .def("csr",
-           [](const py::object& self) {
-             const auto& matrix = self.cast<const WeightMatrix&>();
-             return py::make_tuple(
-                 view_of<double>(matrix.rows.weights, self),
-                 view_of<VertexId>(matrix.rows.columns, self),
-                 view_of<std::uint64_t>(matrix.rows.begin, self).attr("astype")("int64"),
-                 py::make_tuple(matrix.n_rows(), matrix.n_columns));
-           })
-      .def("apply", &apply_weights);
-  module.def("transfer", [](const py::object& source_points, const py::object& source_tets,
-                            const py::list& fields, const py::object& target_points,
-                            const py::object& target_tets, const py::object& kept,
-                            const std::string& kind, const std::string& outside, double tolerance,
-                            std::int32_t order, bool clamp, bool weights, std::int32_t pes) {
-    return transfer(source_points, source_tets, fields, target_points, target_tets, kept,
-                    {kind, outside, tolerance, order, clamp, weights, pes});
-  });
+  py::class_<WeightMatrix>(module, "Weights").def("csr", &csr).def("apply", &apply_weights);
+  module.def("transfer", &transfer);
 }
 
 }  // namespace tessera_python

@@ -108,7 +108,7 @@ class Balance(unittest.TestCase):
                 (lambda: balance.snapshot([1], [0], 0), "n_pes: 0"),
                 (lambda: balance.snapshot([1], [0], 1, speeds=[0]), "speed"),
                 (lambda: balance.snapshot([1], [0], 1, speeds=[np.nan]), r"speeds\[0\] is nan"),
-                (lambda: balance.snapshot([1], [0], 1, sizes=[0.5]), r"sizes\[0\] is 0.5"),
+                (lambda: balance.snapshot([1], [0], 1, sizes=[0.5]), "sizes: its dtype is float64; expected integers"),
                 (lambda: balance.snapshot([1], [0], 1, edges=[[0, 1, 5, 1]]), r"edges\[0, 1\] is 1, and there are 1 ele")):
             with self.assertRaisesRegex(tessera.Error, words):
                 call()

@@ -87,7 +87,7 @@ class Queries(unittest.TestCase):
                 (lambda: collide.pairs(3.0), r"objects: its shape is \(\)"),
                 (lambda: collide.pairs(np.array(["a"])), "objects: its dtype is <U1"),
                 (lambda: collide.pairs([[1, 2], [3]]), "objects: no array can be made of this list"),
-                (lambda: collide.pairs(boxes(4), RNG.random((4, 4))), "give two sets of one kind"),
+                (lambda: collide.pairs(boxes(4), RNG.random((4, 4))), "of one kind with the objects"),
                 (lambda: collide.pairs(RNG.random((4, 3))), "pairs of points or segments"),
                 (lambda: collide.triangle_pairs(np.eye(3), [[0, 1, 3]]), r"triangles\[0, 2\] is 3, and there are 3 points"),
                 (lambda: points.ray([[0, 0, 0]], [[1, 0, 0]]), "no ray hits points"),

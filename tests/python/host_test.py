@@ -32,7 +32,7 @@ class Errors(unittest.TestCase):
         bad_tets[7, 2] = -1
         wide = np.zeros((9, 2))
         for changes, words in (
-                ({"values": FIELD[1:]}, r"values: its shape is \(4912,\); expected \(4913,\) or \(4913, c\)"),
+                ({"values": FIELD[1:]}, r"values: its shape is \(4912,\); expected \(4913,\) or \(4913, c\), for"),
                 ({"values": FIELD[:, None, None]}, "values: its shape is"),
                 ({"values": np.zeros((4913, 0))}, "values: its shape is"),
                 ({"values": FIELD * 1j}, "values: its dtype is complex128; expected real numbers"),
@@ -51,7 +51,7 @@ class Errors(unittest.TestCase):
                 ({"kind": "conservative", "outside": "nearest"}, "no nearest vertex"),
                 ({"outside": "value:3"}, "outside: 'value:3' is unknown"),
                 ({"outside": np.inf}, "inf"),
-                ({"initial": wide, "outside": "keep"}, "initial: it has 2 components, and the values have 1"),
+                ({"initial": wide, "outside": "keep"}, r"initial: its shape is \(9, 2\); expected \(9,\), as the values have it"),
                 ({"tolerance": -1.0}, "tolerance -1"),
                 ({"order": 3, "kind": "moving-least-squares"}, "order 3"),
                 ({"pes": 0}, "pes: 0 is not a number of threads from 1 to 4096"),
@@ -179,19 +179,13 @@ class Host(unittest.TestCase):
 
 
 class Types(unittest.TestCase):
-    def test_the_stub_has_every_name_of_the_extension(self):
+    def test_the_package_is_typed(self):
         folder = os.path.dirname(tessera.__file__)
         self.assertTrue(os.path.exists(os.path.join(folder, "py.typed")))
         with open(os.path.join(folder, "_tessera.pyi"), encoding="utf-8") as file:
-            stub = ast.parse(file.read())
-        kinds = (ast.ClassDef, ast.FunctionDef)
-        declared = {node.name: node for node in stub.body if isinstance(node, kinds)}
-        self.assertEqual(set(declared), {name for name in vars(_tessera) if not name.startswith("_")})
-        for name, node in declared.items():
-            if isinstance(node, ast.ClassDef) and name != "Error":
-                for member in node.body:
-                    own = member.name if isinstance(member, ast.FunctionDef) else member.target.id
-                    self.assertTrue(hasattr(getattr(_tessera, name), own), f"{name}.{own}")
+            stub = {node.name for node in ast.parse(file.read()).body if hasattr(node, "name")}
+        self.assertEqual(stub, {"Error", "__getattr__"})
+        self.assertIs(_tessera.Error, tessera.Error)
 
     def test_all_public_functions_have_types_and_a_docstring(self):
         for module in (tessera, tessera.balance, tessera.collide, tessera.sdf):

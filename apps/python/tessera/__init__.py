@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import enum
 import os
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
@@ -17,7 +18,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import _tessera, balance, collide, plot, sdf
+from . import _check, _tessera, balance, collide, plot, sdf
 from ._tessera import Error
 
 __all__ = ["Coupling", "Error", "KINDS", "Mesh", "Status", "TransferResult", "balance", "collide",
@@ -36,15 +37,34 @@ class Status(enum.IntEnum):
     OUTSIDE = 3   #: in no cell: `outside` decides the value
 
 
-def _policy(kind: str, outside: str | float | None) -> tuple[str, float]:
-    """In the words of the library, and the value of points without a donor."""
-    if outside is None:
-        outside = "keep" if kind.startswith("conservative") else "nearest"
-    if not isinstance(outside, str):
-        return f"value:{float(outside)!r}", float(outside)
-    if outside not in ("nearest", "keep"):
-        raise Error(f"outside: {outside!r} is unknown; give 'nearest', 'keep' or a number")
-    return outside, np.nan
+class _Search:
+    """The checked arguments of a Coupling."""
+
+    def __init__(self, source_points: ArrayLike, source_tets: ArrayLike | None, target_points: ArrayLike,
+                 target_tets: ArrayLike | None, kind: str, outside: str | float | None, tolerance: float, order: int,
+                 clamp: bool, pes: int) -> None:
+        self.meshes = (_check.mesh(source_points, source_tets, "source_"), _check.mesh(target_points, target_tets, "target_"))
+        if outside is None:
+            outside = "keep" if kind.startswith("conservative") else "nearest"
+        self.outside = np.nan if isinstance(outside, str) else float(outside)  #: of points without a donor
+        if not isinstance(outside, str):
+            outside = f"value:{self.outside!r}"
+        elif outside not in ("nearest", "keep"):
+            raise Error(f"outside: {outside!r} is unknown; give 'nearest', 'keep' or a number")
+        self.options, self.pes = (kind, outside, tolerance, order, clamp), pes
+
+    def rooms(self, fields: Sequence[ArrayLike], initial: ArrayLike | None) -> tuple[list[Any], list[Any]]:
+        """Fields as arrays, and arrays for the results, with what points without a donor keep."""
+        n_sources, n_targets = (len(points) for points, _, _ in self.meshes)
+        given = [_check.values(values, "values", n_sources, "source points") for values in fields]
+        out = [np.full((n_targets, *values.shape[1:]), self.outside) for values in given]
+        for result in out if initial is not None else ():
+            kept = _check.values(initial, "initial", n_targets, "target points")
+            result[:] = _check.shaped(kept, "initial", result.shape, f"{result.shape}, as the values have it")
+        return given, out
+
+    def run(self, fields: list[Any], results: list[Any], weights: bool) -> tuple[Any, ...]:
+        return _tessera.transfer(*self.meshes, fields, results, self.options, weights, self.pes)
 
 
 class Coupling:
@@ -68,32 +88,27 @@ class Coupling:
                  kind: str = "linear", outside: str | float | None = None, pes: int = 2, *,
                  target_tets: ArrayLike | None = None, tolerance: float = 0.0, order: int = 1,
                  clamp: bool = False) -> None:
-        self._meshes = (source_points, source_tets, target_points, target_tets)
-        policy, self._outside = _policy(kind, outside)
-        self._options = (kind, policy, tolerance, order, clamp)
-        self._pes = pes
+        self._search = _Search(source_points, source_tets, target_points, target_tets, kind, outside, tolerance,
+                               order, clamp, pes)
         has_matrix = not (clamp or kind == "limited" or kind.startswith("conservative"))
-        _, self.status, self.distance, self._weights, self.notes = self._run([], None, has_matrix)
-
-    def _run(self, fields: list[ArrayLike], initial: ArrayLike | None, weights: bool) -> tuple[Any, ...]:
-        source_points, source_tets, target_points, target_tets = self._meshes
-        return _tessera.transfer(source_points, source_tets, fields, target_points, target_tets, initial,
-                                 *self._options, weights, self._pes)
+        self.status, self.distance, self._weights, self.notes = self._search.run([], [], has_matrix)
 
     def apply(self, *fields: ArrayLike, initial: ArrayLike | None = None) -> Any:
         """The values at the target points of one field, (n,) or (n, c) → (k,) or (k, c); of several
         fields a list. `initial`: what points without a donor keep, in the shape of the result."""
+        given, out = self._search.rooms(fields, initial)
         if self._weights is None:
-            out = self._run(list(fields), initial, False)[0]
+            self._search.run(given, out, False)
         else:
-            out = [self._weights.apply(values, self._outside, initial) for values in fields]
+            for values, result in zip(given, out):
+                self._weights.apply(values, result)
         return out[0] if len(fields) == 1 else out
 
     def weights_csr(self) -> tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.int64], tuple[int, int]]:
         """(data, indices, indptr, shape) of the matrix in SciPy's CSR layout: target = matrix × source.
         A row without entries is a point without a donor."""
         if self._weights is None:
-            raise Error(f"kind {self._options[0]} has no weights: its values are limited, or solve a "
+            raise Error(f"kind {self._search.options[0]} has no weights: its values are limited, or solve a "
                         "system; choose linear or second-order, without clamp")
         return self._weights.csr()
 
@@ -117,7 +132,7 @@ class TransferResult:
     status: NDArray[np.uint8]
     distance: NDArray[np.float64] | None
     notes: dict[str, int]
-    _arguments: tuple[tuple[Any, ...], dict[str, Any]]
+    _search: _Search
 
     def __repr__(self) -> str:
         counts = ", ".join(f"{int((self.status == s).sum())} {s.name.lower()}" for s in Status)
@@ -127,8 +142,7 @@ class TransferResult:
     def donors(self) -> NDArray[np.int64]:
         """(k, w): the source points that each value comes from, padded with -1. The first use searches
         once more; kinds without weights raise Error."""
-        arguments, options = self._arguments
-        _, indices, indptr, shape = Coupling(*arguments, **options).weights_csr()
+        _, indices, indptr, shape = self._search.run([], [], True)[2].csr()
         sizes = np.diff(indptr)
         out = np.full((shape[0], int(sizes.max(initial=0))), -1, dtype=np.int64)
         out[np.arange(out.shape[1]) < sizes[:, None]] = indices
@@ -144,12 +158,10 @@ def transfer(source_points: ArrayLike, source_tets: ArrayLike | None, values: Ar
     values: (n,) or (n, c), per source point. initial: (k,) or (k, c), kept by points without a donor.
     All else as in Coupling. The result does not depend on `pes`.
     """
-    search = (source_points, source_tets, target_points, kind, outside, pes)
-    options = {"target_tets": target_tets, "tolerance": tolerance, "order": order, "clamp": clamp}
-    out, status, distance, _, notes = _tessera.transfer(
-        source_points, source_tets, [values], target_points, target_tets, initial, kind,
-        _policy(kind, outside)[0], tolerance, order, clamp, False, pes)
-    return TransferResult(out[0], status, distance, notes, (search, options))
+    search = _Search(source_points, source_tets, target_points, target_tets, kind, outside, tolerance, order, clamp, pes)
+    given, out = search.rooms([values], initial)
+    status, distance, _, notes = search.run(given, out, False)
+    return TransferResult(out[0], status, distance, notes, search)
 
 
 @dataclass
@@ -167,11 +179,17 @@ class Mesh:
 def read_mesh(path: str | os.PathLike[str], step: int = -1) -> Mesh:
     """Reads ExodusII, gmsh (2.x, 4.x) or VTK (.vtu, legacy .vtk), or makes a cube ("kuhn:8@0.2"), with the
     fields of a time step: 0 is the first one, -1 the last. Hexahedra and others become tetrahedra."""
-    return Mesh(*_tessera.read_mesh(os.fspath(path), step))
+    points, tets, dimension, *fields = _tessera.read_mesh(os.fspath(path), step)
+    return Mesh(points, tets[:, :dimension + 1], *fields)
 
 
 def write_mesh(path: str | os.PathLike[str], points: ArrayLike, tets: ArrayLike,
                fields: dict[str, ArrayLike] | None = None,
                cell_fields: dict[str, ArrayLike] | None = None) -> None:
     """Writes VTK (.vtu) or ExodusII (.exo, .e, .ex2) by the ending of the path, complete or not at all."""
-    _tessera.write_mesh(os.fspath(path), points, tets, fields or {}, cell_fields or {})
+    name, mesh = os.fspath(path), _check.mesh(points, tets)
+    if not name.endswith((".vtu", ".exo", ".e", ".ex2")):
+        raise Error(f"{name}: meshes are written as .vtu (VTK), or .exo, .e or .ex2 (ExodusII); give a name that ends so")
+    rows = ((fields or {}, len(mesh[0]), "points"), (cell_fields or {}, len(np.asarray(tets)), "cells"))
+    _tessera.write_mesh(name, mesh, *({key: _check.values(field, f"field {key!r}", n, things)
+                                       for key, field in of.items()} for of, n, things in rows))

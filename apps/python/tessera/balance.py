@@ -17,7 +17,8 @@ from typing import Union
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import _tessera, plot
+from . import _check, _tessera, plot
+from ._tessera import Error
 
 __all__ = ["Comparison", "Evaluation", "Snapshot", "Strategy", "assign", "compare", "evaluate", "read",
            "snapshot", "strategies", "write"]
@@ -44,6 +45,10 @@ class Snapshot:
             setattr(self, name, array)
         self.n_pes = len(self.speeds)
 
+    def _assignment(self, given: ArrayLike, name: str) -> NDArray[np.int32]:
+        n = len(self.owners)
+        return _check.indices(given, name, (n,), f"({n},), a PE per element", self.n_pes, "PEs", np.int32)
+
 
 Strategy = Union[str, Callable[[Snapshot], ArrayLike]]
 
@@ -64,7 +69,23 @@ def snapshot(loads: ArrayLike, owners: ArrayLike, n_pes: int, *, speeds: ArrayLi
              positions: ArrayLike | None = None) -> Snapshot:
     """A snapshot from arrays, which are those of Snapshot; speeds are 1 by default. Strategies rcb and
     hilbert need positions."""
-    return Snapshot(_tessera.Snapshot(loads, owners, n_pes, speeds, background, sizes, edges, positions))
+    if not 1 <= n_pes <= 2**24:
+        raise Error(f"n_pes: {n_pes} is not a number of PEs from 1 to {2**24}")
+    seconds = _check.shaped(_check.array(loads, "loads", "fiu", "real numbers"), "loads", (-1,),
+                            "(n,), seconds of each element").astype(float)
+    if (bad := np.flatnonzero(~(np.isnan(seconds) | (seconds >= 0) & (seconds <= 1e100)))).size:
+        raise Error(f"loads[{bad[0]}] is {seconds[bad[0]]}; give seconds from 0 on, or NaN where the load is unknown")
+    n = len(seconds)
+    traffic = _check.indices(np.zeros((0, 4), int) if edges is None else edges, "edges", (-1, 4),
+                             "(m, 4): from, to, bytes, messages", 2**53, "numbers", np.int64)
+    _check.indices(traffic[:, :2], "edges", (-1, 2), "", n, "elements", np.int64)
+    return Snapshot(_tessera.Snapshot(
+        seconds,
+        _check.indices(owners, "owners", (n,), f"({n},), a PE per element", n_pes, "PEs", np.int32),
+        _check.doubles(np.ones(n_pes) if speeds is None else speeds, "speeds", (n_pes,), f"({n_pes},)"),
+        _check.doubles(np.zeros(n_pes) if background is None else background, "background", (n_pes,), f"({n_pes},)"),
+        _check.indices(np.zeros(n, int) if sizes is None else sizes, "sizes", (n,), f"({n},)", 2**53, "bytes", np.int64),
+        traffic, np.zeros((0, 3)) if positions is None else _check.doubles(positions, "positions", (n, 3), f"({n}, 3)")))
 
 
 def read(*paths: str | os.PathLike[str]) -> list[Snapshot]:
@@ -85,13 +106,18 @@ def strategies() -> list[str]:
 
 def assign(snapshot: Snapshot, strategy: Strategy, seed: int = 1) -> NDArray[np.int32]:
     """The new PE of each element, (n,). strategy: a name of strategies(), or a function."""
-    chosen = (lambda: strategy(snapshot)) if callable(strategy) else strategy
-    return _tessera.assign(snapshot._handle, chosen, seed)
+    if isinstance(strategy, str):
+        return _tessera.assign(snapshot._handle, strategy, seed)
+    if not callable(strategy):
+        raise Error(f"strategy: {strategy!r} is no name and no function; see strategies()")
+    run = lambda: snapshot._assignment(strategy(snapshot), "PEs of the strategy")
+    return _tessera.assign(snapshot._handle, run, seed)
 
 
 def evaluate(snapshot: Snapshot, owners: ArrayLike | None = None) -> Evaluation:
     """The quality of an assignment, (n,) int; of the present one without it."""
-    return Evaluation(**_tessera.evaluate(snapshot._handle, snapshot.owners if owners is None else owners))
+    chosen = snapshot.owners if owners is None else snapshot._assignment(owners, "owners")
+    return Evaluation(*_tessera.evaluate(snapshot._handle, chosen))
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ import os
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import _tessera
+from . import _check, _tessera
 
 __all__ = ["Field", "build", "load", "read_surface"]
 
@@ -23,7 +23,7 @@ class Field:
     def sample(self, points: ArrayLike, kind: str = "trilinear") -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Distances (m,) and unit normals (m, 3) at points (m, 3). kind: trilinear or tangent (errors of
         second order in the cell), nearest. Outside of the grid: inf and zeros."""
-        return self._field.sample(points, kind)
+        return self._field.sample(_check.points(points, "points"), kind)
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Writes the field, for load()."""
@@ -35,7 +35,10 @@ def build(points: ArrayLike, triangles: ArrayLike, n: int = 64, *, margin: float
     """The field of a surface on n³ voxels, 4 <= n <= 1024. points: (p, 3). triangles: (m, 3) int, in any
     orientation. margin: free space around the surface; None is a tenth of its longest side. thickness:
     distances are cut off there, which saves time. two_sided: an open surface, with distances >= 0."""
-    return Field(_tessera.Field(points, triangles, n, -1.0 if margin is None else margin, thickness, two_sided))
+    corners = _check.points(points, "points")
+    layout = "(m, 3), the points of each triangle"
+    numbers = _check.indices(triangles, "triangles", (-1, 3), layout, len(corners), "points", np.uint32)
+    return Field(_tessera.Field(corners, numbers, n, -1.0 if margin is None else margin, thickness, two_sided))
 
 
 def load(path: str | os.PathLike[str]) -> Field:
