@@ -1,10 +1,8 @@
 // Snapshots of loads, strategies by name and strategies that are functions of Python.
 #include "apps/python/arrays.hpp"
-#include "apps/python/module.hpp"
 #include "runtime/more/balance_offline.hpp"
 
 #include <cmath>
-#include <fstream>
 #include <limits>
 
 namespace tessera_python {
@@ -101,16 +99,6 @@ std::vector<Snapshot> read(const std::vector<std::string>& paths) {
   return out;
 }
 
-void write(const std::string& path, const std::vector<Snapshot>& snapshots) {
-  std::vector<Phase> phases;
-  for (const Snapshot& s : snapshots) phases.push_back({phases.size(), s});
-  std::ofstream file(path, std::ios::binary);
-  file << lb_datafile_bytes(path, write_lb_datafile(phases));
-  file.close();
-  if (!file)
-    fail(ErrorCode::environment, path, " cannot be written; check the folder and the disk");
-}
-
 }  // namespace
 
 void add_balance(py::module_& module) {
@@ -120,7 +108,6 @@ void add_balance(py::module_& module) {
   module.def("evaluate", &evaluate);
   module.def("strategies", &strategy_names);
   module.def("read_snapshots", &read);
-  module.def("write_snapshots", &write);
 }
 
 }  // namespace tessera_python

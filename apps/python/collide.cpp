@@ -1,6 +1,5 @@
 // Pairs of objects that intersect, and queries. The shape of an array says what its rows are.
 #include "apps/python/arrays.hpp"
-#include "apps/python/module.hpp"
 #include "collide/pairs.hpp"
 #include "collide/queries.hpp"
 #include "collide/sphere.hpp"

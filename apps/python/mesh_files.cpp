@@ -1,6 +1,5 @@
 // Meshes with fields from and to files.
 #include "apps/python/arrays.hpp"
-#include "apps/python/module.hpp"
 #include "m2m/field_file.hpp"
 #include "m2m/read_mesh.hpp"
 #include "m2m/write_exodus.hpp"

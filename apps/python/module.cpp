@@ -1,9 +1,17 @@
-#include "apps/python/module.hpp"
-
+// The extension module _tessera, one source per subject. Python's face is tessera/*.py.
 #include "runtime/core/error.hpp"
 
+#include <pybind11/pybind11.h>
+
+namespace tessera_python {
+void add_transfer(pybind11::module_& module);
+void add_mesh_files(pybind11::module_& module);
+void add_collide(pybind11::module_& module);
+void add_balance(pybind11::module_& module);
+void add_sdf(pybind11::module_& module);
+}  // namespace tessera_python
+
 PYBIND11_MODULE(_tessera, module) {
-  module.doc() = "The compiled part of tessera; import tessera instead.";
   pybind11::register_exception<tess::Error>(module, "Error", PyExc_ValueError);
   tessera_python::add_transfer(module);
   tessera_python::add_mesh_files(module);

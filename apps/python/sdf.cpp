@@ -1,12 +1,8 @@
 // Signed distance fields.
 #include "apps/python/arrays.hpp"
-#include "apps/python/module.hpp"
 #include "collide/dn_field/build_field.hpp"
-#include "collide/dn_field/field_file.hpp"
 #include "collide/dn_field/look_up.hpp"
 #include "collide/read_surface.hpp"
-
-#include <limits>
 
 namespace tessera_python {
 namespace {
@@ -44,34 +40,26 @@ LookUp kind_of(const std::string& name) {
        "' is unknown; choose nearest, tangent or trilinear");
 }
 
-/// Samples in blocks, whose coordinates are turned into columns of floats.
 py::tuple sample(const Field& field, const Array<double>& points, const std::string& kind_name) {
   const LookUp kind = kind_of(kind_name);
   const std::span<const Vec3> all = rows<Vec3>(points);
-  std::vector<double> distance(all.size()), normal(3 * all.size());
+  std::vector<double> distance, normal;
   {
     const py::gil_scoped_release others_run;
-    constexpr std::size_t block = 4096;
     std::array<std::vector<float>, 7> columns;  // x, y, z; distance; the normal
-    for (std::size_t first = 0; first < all.size(); first += block) {
-      const std::size_t n = std::min(block, all.size() - first);
-      for (auto& column : columns) column.resize(n);
-      for (std::size_t i = 0; i < n; ++i)
-        for (int k = 0; k < 3; ++k)
-          columns[static_cast<std::size_t>(k)][i] =
-              static_cast<float>(component(all[first + i], k));
-      look_up(field, kind, {columns[0], columns[1], columns[2]},
-              {columns[3], columns[4], columns[5], columns[6]});
-      for (std::size_t i = 0; i < n; ++i) {
-        const float d = columns[3][i];
-        distance[first + i] = d == out_of_reach ? HUGE_VAL : static_cast<double>(d);
-        for (std::size_t k = 0; k < 3; ++k)
-          normal[3 * (first + i) + k] = static_cast<double>(columns[4 + k][i]);
-      }
+    for (auto& column : columns) column.resize(all.size());
+    for (std::size_t i = 0; i < all.size(); ++i)
+      for (int k = 0; k < 3; ++k)
+        columns[static_cast<std::size_t>(k)][i] = static_cast<float>(component(all[i], k));
+    look_up(field, kind, {columns[0], columns[1], columns[2]},
+            {columns[3], columns[4], columns[5], columns[6]});
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const float d = columns[3][i];
+      distance.push_back(d == out_of_reach ? HUGE_VAL : static_cast<double>(d));
+      for (std::size_t k = 4; k < 7; ++k) normal.push_back(static_cast<double>(columns[k][i]));
     }
   }
-  const auto n = static_cast<py::ssize_t>(all.size());
-  return py::make_tuple(array_of(std::move(distance)), array_of<double>(std::move(normal), {n, 3}));
+  return py::make_tuple(array_of(std::move(distance)), matrix_of<double>(std::move(normal)));
 }
 
 py::tuple read(const std::string& path) {
@@ -86,19 +74,13 @@ void add_sdf(py::module_& module) {
   py::class_<Field>(module, "Field")
       .def(py::init(&build))
       .def("sample", &sample)
-      .def("save", [](const Field& field, const std::string& path) { save_field(field, path); })
-      .def_property_readonly("cell", [](const Field& field) { return field.grid.cell; })
-      .def_property_readonly("shape",
-                             [](const Field& field) {
-                               return py::make_tuple(field.grid.n[0], field.grid.n[1],
-                                                     field.grid.n[2]);
-                             })
-      .def_property_readonly("box", [](const Field& field) {
-        const Bounds box = field.grid.box();
-        return py::make_tuple(py::make_tuple(box.low.x, box.low.y, box.low.z),
-                              py::make_tuple(box.high.x, box.high.y, box.high.z));
+      .def("grid", [](const Field& field) {
+        const auto [low, high] = field.grid.box();
+        const std::array<double, 3> first{low.x, low.y, low.z}, last{high.x, high.y, high.z};
+        return py::make_tuple(
+            field.grid.cell, py::tuple(py::cast(field.grid.n)),
+            py::make_tuple(py::tuple(py::cast(first)), py::tuple(py::cast(last))));
       });
-  module.def("load_field", &load_field);
   module.def("read_surface", &read);
 }
 

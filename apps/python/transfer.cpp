@@ -1,7 +1,6 @@
 // Fields from mesh to mesh. The meshes are cut into patches, chares that refer to the job in the
 // memory of the interpreter: they read its values there, and write theirs there, each row once.
 #include "apps/python/arrays.hpp"
-#include "apps/python/module.hpp"
 #include "m2m/coupling_weights.hpp"
 #include "m2m/mesh_parts.hpp"
 #include "m2m/policy.hpp"

@@ -21,7 +21,7 @@ from . import _check, _tessera, plot
 from ._tessera import Error
 
 __all__ = ["Comparison", "Evaluation", "Snapshot", "Strategy", "assign", "compare", "evaluate", "read",
-           "snapshot", "strategies", "write"]
+           "snapshot", "strategies"]
 
 
 class Snapshot:
@@ -92,11 +92,6 @@ def read(*paths: str | os.PathLike[str]) -> list[Snapshot]:
     """The phases of one run, in order, from all of its files: those of Tessera (lb_lab --save-snapshot),
     or of vt (one file per rank; .br is unpacked)."""
     return [Snapshot(handle) for handle in _tessera.read_snapshots([os.fspath(path) for path in paths])]
-
-
-def write(path: str | os.PathLike[str], snapshots: Sequence[Snapshot]) -> None:
-    """Writes phases for read(), and for vt's tools; compressed if the path ends in .br."""
-    _tessera.write_snapshots(os.fspath(path), [s._handle for s in snapshots])
 
 
 def strategies() -> list[str]:

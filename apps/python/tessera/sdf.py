@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _check, _tessera
 
-__all__ = ["Field", "build", "load", "read_surface"]
+__all__ = ["Field", "build", "read_surface"]
 
 
 class Field:
@@ -16,18 +16,15 @@ class Field:
 
     def __init__(self, field: _tessera.Field) -> None:
         self._field = field
-        self.cell: float = field.cell
-        self.shape: tuple[int, int, int] = field.shape
-        self.box: tuple[tuple[float, float, float], tuple[float, float, float]] = field.box
+        self.cell: float
+        self.shape: tuple[int, int, int]
+        self.box: tuple[tuple[float, float, float], tuple[float, float, float]]
+        self.cell, self.shape, self.box = field.grid()
 
     def sample(self, points: ArrayLike, kind: str = "trilinear") -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Distances (m,) and unit normals (m, 3) at points (m, 3). kind: trilinear or tangent (errors of
         second order in the cell), nearest. Outside of the grid: inf and zeros."""
         return self._field.sample(_check.points(points, "points"), kind)
-
-    def save(self, path: str | os.PathLike[str]) -> None:
-        """Writes the field, for load()."""
-        self._field.save(os.fspath(path))
 
 
 def build(points: ArrayLike, triangles: ArrayLike, n: int = 64, *, margin: float | None = None,
@@ -39,11 +36,6 @@ def build(points: ArrayLike, triangles: ArrayLike, n: int = 64, *, margin: float
     layout = "(m, 3), the points of each triangle"
     numbers = _check.indices(triangles, "triangles", (-1, 3), layout, len(corners), "points", np.uint32)
     return Field(_tessera.Field(corners, numbers, n, -1.0 if margin is None else margin, thickness, two_sided))
-
-
-def load(path: str | os.PathLike[str]) -> Field:
-    """Reads a field that save() wrote, bit for bit."""
-    return Field(_tessera.load_field(os.fspath(path)))
 
 
 def read_surface(path: str | os.PathLike[str]) -> tuple[NDArray[np.float64], NDArray[np.uint32]]:
