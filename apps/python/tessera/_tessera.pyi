@@ -1,0 +1,6 @@
+# The faces beside this stub check all arguments, and have the types.
+from typing import Any
+
+class Error(ValueError): ...
+
+def __getattr__(name: str) -> Any: ...
