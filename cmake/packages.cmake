@@ -16,7 +16,7 @@ set(CPACK_DEBIAN_BIN_PACKAGE_NAME tessera-bin)
 set(CPACK_DEBIAN_BIN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_BIN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_BIN_PACKAGE_CONFLICTS hello)  # it has /usr/bin/hello, too
-set(CPACK_DEBIAN_BIN_PACKAGE_RECOMMENDS "gnuplot-nox, libtessera-dev")
+set(CPACK_DEBIAN_BIN_PACKAGE_RECOMMENDS gnuplot-nox)
 set(CPACK_COMPONENT_BIN_DESCRIPTION "Programs: transfer of fields between meshes, overset meshes, collision, particles,
  molecular dynamics, load balancing, benchmarks, and tess_monitor")
 

@@ -101,6 +101,14 @@ function(tess_library name)
   set_property(GLOBAL APPEND PROPERTY TESS_LIBRARIES ${name} ${ARG_USES} ${ARG_USES_TO_BUILD})
 endfunction()
 
+# tess_registers(LIBRARY SYMBOL): no program calls it by name; the linker takes it for this symbol of what registers it.
+function(tess_registers library symbol)
+  target_link_options(${library} INTERFACE "LINKER:--undefined=${symbol}")
+  if(BUILD_SHARED_LIBS)
+    target_link_options(${library} INTERFACE "LINKER:--no-as-needed")
+  endif()
+endfunction()
+
 # tess_export(NAME LIBRARY): Tessera::NAME is this library and all that it stands on; for pkg-config it is tessera-NAME.
 function(tess_export name library)
   add_library(Tessera::${name} ALIAS ${library})

@@ -254,7 +254,7 @@ bool read_options(kit::Driver& driver, Options& options, int argc, char** argv) 
   add_studies(driver, options);
   driver.examples({"kuhn:8 kuhn:9 --fields sin --pes 2 --explain", "kuhn:8@0.2 kuhn:9 --kind all",
                    "kuhn:8 kuhn:9 --out moved.exo --picture cut.svg",
-                   "kuhn:4,8@0.2 --study kind --plot study"});
+                   "kuhn:4,8@0.2 --study h --fields sin --plot study"});
   if (!driver.parse(argc, argv)) return false;
   if (driver.is_given("--study")) read_study(options);
   check_values(driver, options);

@@ -35,7 +35,7 @@ if [[ $way != source ]]; then
   options+=("-DCMAKE_PREFIX_PATH=$prefix")
   export PKG_CONFIG_PATH=$prefix/lib/pkgconfig
 else
-  options+=("-DTESSERA=$from")
+  options+=("-DTESSERA=$from" -DBUILD_SHARED_LIBS=ON)  # with an installation they are static
 fi
 
 cmake -S "$here/outside" -B "$scratch/build" "${options[@]}" >"$scratch/log" 2>&1 || { cat "$scratch/log"; exit 1; }

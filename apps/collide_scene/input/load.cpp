@@ -1,6 +1,7 @@
 #include "apps/collide_scene/input/load.hpp"
 
 #include "collide/read_surface.hpp"
+#include "runtime/core/did_you_mean.hpp"
 #include "runtime/core/error.hpp"
 
 #include <algorithm>
@@ -32,7 +33,8 @@ Scene load_one(const std::string& input, std::uint64_t seed) {
   std::string names;
   for (const SceneKind& kind : scene_kinds()) names.append(" ").append(kind.name);
   tess::fail(tess::ErrorCode::bad_argument, input,
-             ": is neither a file .obj, .ply or .stl nor a scene NAME:N; there are", names);
+             ": is neither a file .obj, .ply or .stl nor a scene NAME:N; there are", names,
+             tess::did_you_mean(input.substr(0, input.find(':')), names));
 }
 
 }  // namespace

@@ -1,7 +1,6 @@
 #include "apps/collide_scene/scenes/scene.hpp"
 
 #include "apps/collide_scene/scenes/kinds.hpp"
-#include "runtime/core/did_you_mean.hpp"
 #include "runtime/core/error.hpp"
 #include "runtime/core/number.hpp"
 
@@ -74,8 +73,7 @@ Scene make_scene(std::string_view text, std::uint64_t seed) {
     std::string names;
     for (const SceneKind& each : kinds) names.append(names.empty() ? "" : ", ").append(each.name);
     tess::fail(tess::ErrorCode::bad_value, "no scene '", text, "': there are ", names,
-               ", each alone or with a number (boxes:1000)",
-               tess::did_you_mean(text.substr(0, text.find(':')), names));
+               ", each alone or with a number (boxes:1000)");
   }
   std::uint64_t n = kind->default_n;
   if (const std::size_t colon = text.find(':'); colon != std::string_view::npos) {
