@@ -119,6 +119,7 @@ void print_frame(const json& frame, const std::vector<std::string>& lines, std::
                to - from == 1 ? fmt::format("{}", from) : fmt::format("{}-{}", from, to - 1), busy,
                rate, queue, std::string(static_cast<std::size_t>(busy / 4), '#'));
   }
+  fmt::print("{}\n", frame["limits"].get<std::string>());
   for (const json& late : frame["late"])
     fmt::print("PE {} is in {}\n", late[0].get<int>(), late[1].get<std::string>());
   fmt::print("{:>24} {:>10} {:>10} {:>10}\n", "chares", "all", "least", "most");

@@ -25,32 +25,28 @@ tess::balance::Assignment deal(const tess::balance::Snapshot& snapshot) {
 
 class Worker : public tess::Chare<Worker> {
  public:
-  void begin(tess::Callback<void> done) {
-    done_ = done;
-    work();
-  }
   void work() {
     tess::charge(std::chrono::milliseconds(index().x < 4 ? 5 : 1));
     ++phase_;
     at_sync();
   }
-  void resume_from_sync() { phase_ < 20 ? work() : contribute(done_); }
-
+  void resume_from_sync() {
+    if (phase_ < 20) work();
+  }
   template <class Ar>
   void serialize(Ar& ar) {
-    ar(phase_, done_);
+    ar(phase_);
   }
 
  private:
   int phase_ = 0;
-  tess::Callback<void> done_;
 };
 
 tess::Task measure(tess::BalanceOptions balance) {
   const auto workers = tess::create<Worker>(tess::range(16));
   (void)tess::start_balancing(workers, balance);
   const tess::Time begin = tess::now();
-  co_await workers.reduce<&Worker::begin>();
+  co_await tess::epoch([&] { workers.broadcast<&Worker::work>(); });
   tess::print(balance.strategy, ": ", tess::seconds(tess::now() - begin), " s\n");
 }
 

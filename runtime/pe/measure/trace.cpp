@@ -25,20 +25,13 @@ std::uint64_t arrow(PeId source, std::uint32_t number) {
   return static_cast<std::uint64_t>(source.value) << 32U | number;
 }
 
-/// The names of actions, each of which is made once.
-class ActionNames {
- public:
-  [[nodiscard]] const std::string& operator[](std::uint32_t action) {
-    auto& name = names_[action];
-    if (name.empty()) name = trace_name(action);
-    return name;
-  }
-  [[nodiscard]] bool is_users(std::uint32_t action) { return (*this)[action] != of_runtime; }
-  static constexpr const char* of_runtime = "runtime";
+constexpr const char* of_runtime = "runtime";
 
- private:
-  std::unordered_map<std::uint32_t, std::string> names_;
-};
+/// The send of a slice's message; null if it is not among the records.
+const Trace::Send* send_of(const std::vector<TraceOfPe>& pes, const Trace::Slice& slice) {
+  const auto at = static_cast<std::size_t>(slice.source.value);
+  return at < pes.size() ? pes[at].trace->send_of(slice.number) : nullptr;
+}
 
 class TraceWriter {
  public:
@@ -48,7 +41,7 @@ class TraceWriter {
     put("{\"displayTimeUnit\":\"ns\",\"traceEvents\":[");
     for (const TraceOfPe& of : pes)
       for (const Trace::Slice& slice : of.trace->slices())
-        if (names_.is_users(slice.action)) shown_.push_back(arrow(slice.source, slice.number));
+        if (is_users(slice)) shown_.push_back(arrow(slice.source, slice.number));
     std::sort(shown_.begin(), shown_.end());
   }
 
@@ -74,19 +67,17 @@ class TraceWriter {
     for (std::size_t i = 0; i < slices.size(); ++i) {
       const Trace::Slice& slice = slices[i];
       const double begin = of.seconds(slice.begin);
-      if (names_.is_users(slice.action)) {
-        const TraceOfPe* const source = find(slice.source);
-        const bool has_send = source != nullptr && source->trace->send_of(slice.number) != nullptr;
-        span(names_[slice.action], of.pe, begin, of.seconds(slice.end),
-             has_send ? flow("in", slice.source, slice.number) : "");
+      if (is_users(slice)) {
+        span(name_of(slice), of.pe, begin, of.seconds(slice.end),
+             send_of(pes_, slice) ? flow("in", slice.source, slice.number) : "");
         continue;
       }
       double end = of.seconds(slice.end);
-      for (; i + 1 < slices.size() && !names_.is_users(slices[i + 1].action) &&
+      for (; i + 1 < slices.size() && !is_users(slices[i + 1]) &&
              of.seconds(slices[i + 1].begin) - end <= of.pause;
            ++i)
         end = of.seconds(slices[i + 1].end);
-      span(ActionNames::of_runtime, of.pe, begin, end, "");
+      span(of_runtime, of.pe, begin, end, "");
     }
     for (const Trace::Send& send : of.trace->sends())
       if (const double at = of.seconds(send.at);
@@ -105,10 +96,12 @@ class TraceWriter {
                    static_cast<unsigned long long>(of.trace->n_dropped()));
   }
 
-  [[nodiscard]] const TraceOfPe* find(PeId pe) const {
-    const auto at = static_cast<std::size_t>(pe.value);
-    return at < pes_.size() && pes_[at].pe == pe ? &pes_[at] : nullptr;
+  [[nodiscard]] const std::string& name_of(const Trace::Slice& slice) {
+    std::string& name = names_[slice.action];
+    if (name.empty()) name = trace_name(slice.action);
+    return name;
   }
+  [[nodiscard]] bool is_users(const Trace::Slice& slice) { return name_of(slice) != of_runtime; }
   [[nodiscard]] static std::string flow(const char* direction, PeId source, std::uint32_t number) {
     return fmt::format(R"(,"bind_id":"0x{:x}","flow_{}":true)", arrow(source, number), direction);
   }
@@ -128,8 +121,8 @@ class TraceWriter {
 
   const std::string path_;
   const std::vector<TraceOfPe>& pes_;
-  ActionNames names_;
-  std::vector<std::uint64_t> shown_;  // arrows to slices of the user, sorted
+  std::unordered_map<std::uint32_t, std::string> names_;  // by action
+  std::vector<std::uint64_t> shown_;                      // arrows to slices of the user, sorted
   ProcessId process_{-1};
   std::string comma_ = "\n";
   std::unique_ptr<std::FILE, int (*)(std::FILE*)> file_;
@@ -140,7 +133,7 @@ class TraceWriter {
 std::string trace_name(std::uint32_t action) {
   const std::string_view name = Registry::at(action).name();
   if (plain_name(name) == "main_program") return "main program";
-  return is_of_runtime(name) ? ActionNames::of_runtime : plain_name(name);
+  return is_of_runtime(name) ? of_runtime : plain_name(name);
 }
 
 /// Of each process: the least time from a send to the slice of its message, by the clocks as they
@@ -150,12 +143,11 @@ void align_clocks(std::vector<TraceOfPe>& pes) {
   std::map<ProcessId, std::array<double, 2>> least;
   for (const TraceOfPe& to : pes)
     for (const Trace::Slice& slice : to.trace->slices()) {
-      const auto at = static_cast<std::size_t>(slice.source.value);
-      if (at >= pes.size() || pes[at].process == to.process) continue;
-      const TraceOfPe& from = pes[at];
-      const Trace::Send* const send = from.trace->send_of(slice.number);
+      const Trace::Send* const send = send_of(pes, slice);
+      if (send == nullptr) continue;
+      const TraceOfPe& from = pes[static_cast<std::size_t>(slice.source.value)];
       const bool outwards = from.process == ProcessId{0};
-      if (send == nullptr || (!outwards && to.process != ProcessId{0})) continue;
+      if (outwards == (to.process == ProcessId{0})) continue;
       const ProcessId other = outwards ? to.process : from.process;
       double& shortest = least.try_emplace(other, std::array{none, none}).first->second[outwards];
       shortest = std::min(shortest, to.seconds(slice.begin) - from.seconds(send->at));
