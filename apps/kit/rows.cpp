@@ -169,12 +169,14 @@ Json json_rows(std::span<const Heading> headings, const Json& cells) {
   return out;
 }
 
-void add_point(Chart& chart, const std::string& series, const Json& x, const Json& y) {
+void add_point(Chart& chart, const std::string& series, const Json& x, const Json& y,
+               const Json& spread) {
   const Point point{number(x), number(y)};
   if (std::isnan(point.x) || std::isnan(point.y)) return;
   const auto same = std::ranges::find(chart.series, series, &Series::name);
   Series& found = same != chart.series.end() ? *same : chart.series.emplace_back(Series{series});
   found.points.push_back(point);
+  if (const double size = number(spread); !std::isnan(size)) found.spreads.push_back(size);
 }
 
 std::optional<double> fitted_order(const Json& x, const Json& y) {

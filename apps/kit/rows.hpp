@@ -63,8 +63,9 @@ Json of(const decltype(detail::row_of(member))& row) {
 [[nodiscard]] Json json_rows(std::span<const Heading> headings, const Json& cells);
 
 /// Appends a point to the series of this name, which is made where there is none. A null is no
-/// point.
-void add_point(Chart& chart, const std::string& series, const Json& x, const Json& y);
+/// point. `spread`: the bar of a repeated measurement, for all points of a series or none.
+void add_point(Chart& chart, const std::string& series, const Json& x, const Json& y,
+               const Json& spread = {});
 
 template <class Row>
 class Rows {

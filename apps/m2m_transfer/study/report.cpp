@@ -31,7 +31,7 @@ kit::Series second_order(const kit::Chart& chart) {
   }
   if (c == 0) return {};
   c *= 0.7;
-  return {"order 2", {{low, c * low * low}, {high, c * high * high}}, kit::Style::dashes};
+  return {"order 2", {{low, c * low * low}, {high, c * high * high}}, {}, kit::Style::dashes};
 }
 
 kit::Chart chart_of(const Reports& reports, const std::string& title, const std::string& x_label,
