@@ -68,7 +68,7 @@ void finish(Problem& problem, kit::Driver& driver) {
   driver.write(std::array{json(problem.report)});
   const std::string& prefix = problem.report.options.out;
   progress.phase("writing the files of --out");
-  if (!prefix.empty()) write_files(prefix, problem.scene, result.pairs);
+  if (!prefix.empty()) write_files(prefix, problem.scene, result, problem.report.n_pes);
 }
 
 /// The pairs of the last step are kept for --out.
@@ -202,7 +202,8 @@ int start(tess::Setup& setup, int argc, char** argv, bool on_chares) {
   driver.flag("--open", options.rules.open, "objects that only touch are no pair");
   driver.option("--seed", options.seed, "of scenes with random places");
   driver.option("--out PREFIX", options.out,
-                "write PREFIX.svg (a picture), PREFIX_hits.vtp and PREFIX_pairs.vtp (ParaView), or "
+                "write PREFIX.svg (what collides), PREFIX_owners.svg (owners, voxels), "
+                "PREFIX_hits.vtp and PREFIX_pairs.vtp (ParaView), or "
                 "the table and charts of a study");
   driver
       .option("--study WHAT", study,

@@ -22,7 +22,7 @@ for key in objects pairs candidates false_positive_rate voxel_size levels voxels
 done
 [[ $(value_of objects) == 4 && $(value_of pairs) -ge 2 && $(value_of pairs) -le $(value_of candidates) ]]
 check "the wall stands through the floor" $?
-for file in hits.svg hits_hits.vtp hits_pairs.vtp; do
+for file in hits.svg hits_owners.svg hits_hits.vtp hits_pairs.vtp; do
   [[ -s $scratch/out/$file ]]
   check "--out writes $file" $?
 done

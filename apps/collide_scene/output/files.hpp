@@ -20,9 +20,14 @@ void prepare_files(const std::string& prefix, const std::vector<std::string>& en
 [[nodiscard]] std::vector<std::string> endings();
 
 /// The scene as an SVG, seen from above and aside: models in pale colours, what collides from
-/// yellow to dark red by its number of hits. Only what is seen is in it: at most some ten thousand
+/// yellow to violet by the rank of its number of hits. Only what is seen is in it: at most some ten thousand
 /// triangles as they are, more as rows of pixels. n_hits: one per object.
 [[nodiscard]] std::string picture(const Scene& scene, std::span<const std::uint32_t> n_hits);
+
+/// The same scene with a colour per owner, of consecutive objects each, and the voxels of this edge
+/// on its ground.
+[[nodiscard]] std::string picture_of_owners(const Scene& scene, std::int32_t n_owners,
+                                            double voxel_size);
 
 // Results for ParaView, as the text of VTP files with raw binary data behind it.
 
@@ -33,7 +38,8 @@ void prepare_files(const std::string& prefix, const std::vector<std::string>& en
 /// A segment per pair, between the centres of the boxes of the two, with the positions of both.
 [[nodiscard]] std::string pairs_vtp(const Scene& scene, std::span<const ScenePair> pairs);
 
-/// PREFIX.svg, PREFIX_hits.vtp, PREFIX_pairs.vtp. `pairs`: of the scene as it is.
-void write_files(const std::string& prefix, const Scene& scene, std::span<const ScenePair> pairs);
+/// PREFIX.svg, PREFIX_owners.svg, PREFIX_hits.vtp, PREFIX_pairs.vtp. `result`: of the scene as it is.
+void write_files(const std::string& prefix, const Scene& scene, const RunResult& result,
+                 std::int32_t n_owners);
 
 }  // namespace collide_scene

@@ -76,6 +76,8 @@ View::View(const Scene& scene, int n_pixels) {
   const auto pixels = [&](double extent) {
     return triangles_.empty() ? 1 : std::max(1, static_cast<int>(std::ceil(extent * scale)) + 2);
   };
+  corner_ = bounds.lo;
+  left_ = least_x, top_ = least_y, scale_ = scale;
   width_ = pixels(greatest_x - least_x);
   height_ = pixels(greatest_y - least_y);
   const auto n = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
@@ -88,6 +90,11 @@ View::View(const Scene& scene, int n_pixels) {
     }
     draw(t);
   }
+}
+
+kit::Point View::pixel(const Point& p) const {
+  const Point from = difference(p, corner_);
+  return {1 + (dot(u, from) - left_) * scale_, 1 + (-dot(v, from) - top_) * scale_};
 }
 
 void View::draw_at(int x, int y, double depth, std::uint32_t number) {

@@ -6,6 +6,7 @@
 #pragma once
 
 #include "apps/collide_scene/scenes/scene.hpp"
+#include "apps/kit/output/chart.hpp"
 
 #include <array>
 #include <cstdint>
@@ -35,6 +36,8 @@ class View {
   /// the scene takes `n_pixels`.
   View(const Scene& scene, int n_pixels);
 
+  /// Where a point of space is seen.
+  [[nodiscard]] kit::Point pixel(const tess::collide::Point& p) const;
   [[nodiscard]] int width() const { return width_; }
   [[nodiscard]] int height() const { return height_; }
   [[nodiscard]] const std::vector<Seen>& triangles() const { return triangles_; }
@@ -51,6 +54,8 @@ class View {
   void draw_at(int x, int y, double depth, std::uint32_t number);
 
   int width_ = 1, height_ = 1;
+  tess::collide::Point corner_{};  // of the scene
+  double left_ = 0, top_ = 0, scale_ = 1;
   std::vector<Seen> triangles_;
   std::vector<std::uint32_t> nearest_;
   std::vector<float> depth_;

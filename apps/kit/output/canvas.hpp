@@ -7,6 +7,7 @@
 #pragma once
 
 #include "apps/kit/output/chart.hpp"
+#include "apps/kit/output/style.hpp"
 
 #include <array>
 #include <span>
@@ -54,7 +55,7 @@ class Canvas {
  public:
   struct Size {
     double width = 0, height = 0;
-    double font = 12;
+    double font = font_size;
     double margin = 0;  ///< around the width and height
   };
   /// A white page.

@@ -1,6 +1,6 @@
 // Line charts as SVG, for the reports of programs: error against run time, time against chares
 // per PE. The data is written beside the picture as CSV (series,x,y, and low,high of error bars;
-// NAME.csv for NAME.svg), so that no data is lost without gnuplot.
+// NAME.csv for NAME.svg), so that no data is lost without gnuplot. The key is where no curve is.
 //
 //     kit::Chart chart{.title = "transfer", .x_label = "seconds", .y_label = "L2", .x_log = true};
 //     chart.series.push_back({"kuhn", {{0.1, 1e-2}, {0.8, 2.5e-3}}});
@@ -17,7 +17,8 @@ struct Point {
   double low = y, high = y;  ///< the ends of its error bar
 };
 
-enum class Style { lines_points, lines, points, dashes };
+/// `published`: what others have measured, as points that are larger than ours.
+enum class Style { lines_points, lines, points, dashes, published };
 
 struct Series {
   std::string name{};  ///< any text; empty: not in the key
@@ -28,7 +29,7 @@ struct Series {
 struct Chart {
   std::string title{}, x_label{}, y_label{};  ///< any text
   bool x_log = false, y_log = false;
-  std::vector<double> x_ticks{};  ///< where the x axis is labelled; empty: chosen
+  std::vector<double> x_ticks{};  ///< where the x axis is labelled; empty: chosen (axis.hpp)
   bool equal_axes = false;        ///< one unit is as long in x as in y: for paths in space
   std::vector<Series> series{};
 };

@@ -1,5 +1,6 @@
 #include "apps/kit/output/timeline.hpp"
 
+#include "apps/kit/output/axis.hpp"
 #include "apps/kit/output/canvas.hpp"
 #include "apps/kit/output/quoting.hpp"
 #include "apps/kit/output/ticks.hpp"
@@ -22,7 +23,7 @@ struct Look {
   const char* colour;
 };
 constexpr std::array<Look, 3> looks{
-    {{"busy", "#0072b2"}, {"idle", "#dddddd"}, {"balancing", "#d55e00"}}};
+    {{"busy", colours[0]}, {"idle", "#dddddd"}, {"balancing", colours[4]}}};
 
 const Look& look(Activity activity) {
   return looks[static_cast<std::size_t>(activity)];
@@ -74,7 +75,7 @@ std::string svg(const Timeline& timeline) {
   const auto x = [&](double time) { return left + (time - first) / span * (width - left - right); };
 
   Canvas canvas({.width = width, .height = base + bottom});
-  canvas.text({left, 20}, timeline.title, Anchor::start, 14);
+  canvas.text({left, 20}, timeline.title);
   for (std::size_t i = 0; i < looks.size(); ++i) {
     const double at = left + 110.0 * static_cast<double>(i);
     canvas.circle({at + 5, 40}, 5, {.fill = looks[i].colour});
@@ -94,7 +95,7 @@ std::string svg(const Timeline& timeline) {
     for (double tick = 0; tick <= span * (1 + 1e-9); tick += step) {
       const double at = x(first + tick);
       canvas.path(Path().move({at, base}).line({at, base + 5}), {.stroke = "black"});
-      canvas.text({at, base + 18}, fmt::format("{:.6g}", tick / unit.seconds), Anchor::middle);
+      canvas.text({at, base + 18}, number_text(tick / unit.seconds), Anchor::middle);
     }
     canvas.text({width - right, base + 34}, unit.name, Anchor::end);
   }

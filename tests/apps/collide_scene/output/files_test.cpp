@@ -6,6 +6,7 @@
 #include "tests/support/scratch.hpp"
 
 #include <cstring>
+#include <set>
 
 using namespace collide_scene;
 
@@ -91,6 +92,34 @@ TEST_CASE("the picture shows scenes of points, far away and of one place",
   const Scene wave = make_scene("wave:131072");
   CHECK_THAT(picture(wave, std::vector<std::uint32_t>(wave.n_objects(), 0)), !Contains("M0 "));
   CHECK_THAT(picture(wave, std::vector<std::uint32_t>(wave.n_objects(), 0)), Contains("h"));
+}
+
+TEST_CASE("a scene in which nearly all collide has many colours", "[apps][collide_scene]") {
+  const Scene planes = make_scene("planes:512");
+  std::vector<std::uint32_t> n_hits(planes.n_objects(), 8);
+  for (std::size_t i = 0; i < n_hits.size(); i += 2) n_hits[i] = 5 + i % 3;
+  const std::string svg = picture(planes, n_hits);
+  CHECK_THAT(svg, Contains("hits per object: 5"));
+  // Half of the objects have the most hits: they are in the middle of the upper half of the ramp.
+  std::set<std::string> of_ramp;
+  for (std::size_t at = svg.find("objects collide"); (at = svg.find("fill=\"#", at)) != svg.npos;
+       ++at)
+    of_ramp.insert(svg.substr(at + 6, 7));
+  CHECK(of_ramp.size() >= 4);
+  CHECK(!of_ramp.contains("#54148c"));
+}
+
+TEST_CASE("owners have a colour each, and stand on their voxels", "[apps][collide_scene]") {
+  Scene scene;
+  for (int i = 0; i < 4; ++i) scene.boxes.push_back({{2.0 * i, 0, 0}, {2.0 * i + 1, 4, 1}});
+  const std::string two = picture_of_owners(scene, 2, 2);
+  CHECK_THAT(two, Contains("voxels of 2: squares; owners, PEs 0 to 1"));
+  CHECK_THAT(two, Contains("#0072b2") && Contains("#d55e00"));
+  const std::size_t lines = two.find("#777");
+  // x from 0 to 7 in steps of 2, y from 0 to 4.
+  CHECK(std::ranges::count(two.substr(lines, two.find("/>", lines) - lines), 'M') == 5 + 3);
+  CHECK_THAT(picture_of_owners(scene, 1, 2), !Contains("#d55e00"));
+  CHECK_THAT(picture_of_owners(scene, 1, 1e-3), !Contains("#777"));
 }
 
 TEST_CASE("files that cannot be written are refused before the run", "[apps][collide_scene]") {

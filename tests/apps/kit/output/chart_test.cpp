@@ -2,8 +2,10 @@
 // well-formed and has a curve per series, for any name of a series.
 #include "apps/kit/output/chart.hpp"
 
+#include "apps/kit/output/axis.hpp"
 #include "apps/kit/output/file_names.hpp"
 #include "apps/kit/output/quoting.hpp"
+#include "apps/kit/output/style.hpp"
 #include "apps/kit/output/timeline.hpp"
 #include "apps/kit/output/write_file.hpp"
 #include "tests/apps/xml.hpp"
@@ -11,6 +13,8 @@
 #include "tests/support/scratch.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <limits>
@@ -97,25 +101,6 @@ TEST_CASE("the SVG of a chart has a curve per series, and every text unchanged",
   CHECK(n_texts(elements, "L2 & Linf") == 1);
 }
 
-TEST_CASE("error bars stand in the data, and are a curve of their own without a name",
-          "[apps][plot]") {
-  const Scratch scratch;
-  Chart chart{.title = "bars"};
-  chart.series.push_back({"runs", {{1, 2, 1.5, 3}, {2, 4}}});
-  CHECK(write_svg(scratch.path("a.svg"), chart) == has_gnuplot());
-  const auto lines = read_csv(slurp(scratch.path("a.csv")));
-  REQUIRE(lines.size() == 3);
-  CHECK(lines[0] == std::vector<std::string>{"series", "x", "y", "low", "high"});
-  CHECK(lines[1] == std::vector<std::string>{"runs", "1", "2", "1.5", "3"});
-  CHECK(lines[2] == std::vector<std::string>{"runs", "2", "4", "4", "4"});
-  if (!has_gnuplot()) return;
-  const auto elements = read_xml(slurp(scratch.path("a.svg")));
-  CHECK(count(elements, [](const XmlElement& e) {
-          return e.attributes.find("id=\"gnuplot_plot_") != std::string::npos;
-        }) == 2);
-  CHECK(n_texts(elements, "runs") == 1);
-}
-
 TEST_CASE("points that do not fit on the axes are left out, and the others are drawn",
           "[apps][plot]") {
   const Scratch scratch;
@@ -154,10 +139,114 @@ TEST_CASE("no two labels of an axis are equal, and whole numbers have all their 
   for (const XmlElement& e : read_xml(slurp(scratch.path("a.svg"))))
     if (e.name == "text" && e.text.find_first_of("0123456789") != std::string::npos)
       labels.push_back(e.text);
-  CHECK(std::count(labels.begin(), labels.end(), "1024") == 1);
-  CHECK(std::count(labels.begin(), labels.end(), "2048") == 1);
+  CHECK(std::count(labels.begin(), labels.end(), "1\u2009024") == 1);
+  CHECK(std::count(labels.begin(), labels.end(), "2\u2009048") == 1);
   std::sort(labels.begin(), labels.end());
   CHECK(std::adjacent_find(labels.begin(), labels.end()) == labels.end());
+}
+
+TEST_CASE("numbers of axes are written as readers write them", "[apps][plot]") {
+  CHECK(number_text(0) == "0");
+  CHECK(number_text(-0.0) == "0");
+  CHECK(number_text(16) == "16");
+  CHECK(number_text(1000) == "1\u2009000");
+  CHECK(number_text(-65536) == "-65\u2009536");
+  CHECK(number_text(1048576) == "1\u2009048\u2009576");
+  CHECK(number_text(2e6) == "2·10⁶");
+  CHECK(number_text(1e-12) == "10⁻¹²");
+  CHECK(number_text(-1e17) == "-10¹⁷");
+  CHECK(number_text(0.05) == "0.05");
+  CHECK(number_text(1234.5) == "1\u2009234");
+}
+
+TEST_CASE("axes are labelled at the counts, at decades or at round numbers", "[apps][plot]") {
+  const auto labels = [](const Axis& axis) {
+    std::string all;
+    for (const auto& [at, text] : axis.ticks) all += (all.empty() ? "" : " ") + text;
+    return all;
+  };
+  CHECK(labels(axis_of({4, 1, 16, 2, 8, 4}, true, {}, false)) == "1 2 4 8 16");
+  CHECK(labels(axis_of({1e-5, 3, 0.2}, true, {}, false)) == "10⁻⁵ 10⁻⁴ 0.001 0.01 0.1 1 10");
+  CHECK(labels(axis_of({0.03, 0.4}, true, {}, false)) == "0.02 0.05 0.1 0.2 0.5");
+  CHECK(labels(axis_of({1.5, 2.5}, true, {}, false)) == "1.4 1.6 1.8 2 2.2 2.4 2.6");
+  CHECK(labels(axis_of({15, 71}, false, {}, true)) == "0 10 20 30 40 50 60 70 80");
+  CHECK(labels(axis_of({65, 71}, false, {}, true)) == "65 66 67 68 69 70 71");
+  CHECK(labels(axis_of({0, 318}, false, {}, false)) == "0 50 100 150 200 250 300");
+  CHECK(axis_of({0, 318}, false, {}, false).high == 318);
+  CHECK(labels(axis_of({3, 3}, false, {0.125, 4}, false)) == "0.125 4");
+  CHECK(labels(axis_of({5}, false, {}, false)).find('5') != std::string::npos);
+  CHECK(axis_of({1, 100}, true, {}, false).part(10) == Approx(0.5));
+  CHECK(axis_of({0, 8}, false, {}, false).part(2) == Approx(0.25));
+}
+
+TEST_CASE("the first five colours differ in grey", "[apps][plot]") {
+  std::vector<double> greys;
+  for (std::size_t i = 0; i < 5; ++i) {
+    double luminance = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double part =
+          std::stoi(std::string(colours[i]).substr(1 + 2 * k, 2), nullptr, 16) / 255.0;
+      luminance += std::array{0.2126, 0.7152, 0.0722}[k] * std::pow((part + 0.055) / 1.055, 2.4);
+    }
+    greys.push_back(116 * std::cbrt(std::max(luminance, 0.0089)) - 16);  // CIE lightness
+  }
+  std::sort(greys.begin(), greys.end());
+  for (std::size_t i = 1; i < greys.size(); ++i) CHECK(greys[i] - greys[i - 1] > 6);
+}
+
+TEST_CASE("the key is where no curve is", "[apps][plot][.][gnuplot]") {
+  const Scratch scratch;
+  // The place of the key's text, in pixels of 720 × 480.
+  const auto key_of = [&](const std::vector<Point>& points) {
+    Chart chart{.title = "t", .series = {{"a name of a curve", points}}};
+    REQUIRE(write_svg(scratch.path("a.svg"), chart));
+    const std::string svg = slurp(scratch.path("a.svg"));
+    const std::size_t text = svg.find("a name of a curve", svg.find("</title>"));
+    const std::size_t at = svg.rfind("translate(", text) + 10;
+    return Point{std::strtod(svg.c_str() + at, nullptr),
+                 std::strtod(svg.c_str() + svg.find(',', at) + 1, nullptr)};
+  };
+  const Point falling = key_of({{0, 1}, {1, 0}}), rising = key_of({{0, 0}, {1, 1}});
+  CHECK((falling.x > 360 && falling.y < 240));
+  CHECK((rising.x < 360 && rising.y < 240));
+  const Point bent = key_of({{0, 0}, {0, 1}, {1, 1}});
+  CHECK((bent.x > 360 && bent.y > 240));
+  const Point none = key_of({{0, 0}, {0, 1}, {1, 1}, {1, 0}, {0, 0}});
+  CHECK(none.x > falling.x);  // beside the plot
+}
+
+TEST_CASE("repeated measurements have bars, and stand in the CSV", "[apps][plot]") {
+  const Scratch scratch;
+  Chart chart{.title = "bars"};
+  chart.series.push_back({"runs", {{1, 2, 1.5, 3}, {2, 4}}});
+  CHECK(write_svg(scratch.path("a.svg"), chart) == has_gnuplot());
+  const auto lines = read_csv(slurp(scratch.path("a.csv")));
+  REQUIRE(lines.size() == 3);
+  CHECK(lines[0] == std::vector<std::string>{"series", "x", "y", "low", "high"});
+  CHECK(lines[1] == std::vector<std::string>{"runs", "1", "2", "1.5", "3"});
+  CHECK(lines[2] == std::vector<std::string>{"runs", "2", "4", "4", "4"});
+  if (!has_gnuplot()) return;
+  const std::string bars = slurp(scratch.path("a.svg"));
+  chart.series[0].points[0] = {1, 2};
+  write_svg(scratch.path("a.svg"), chart);
+  CHECK(std::ranges::count(bars, 'M') > std::ranges::count(slurp(scratch.path("a.svg")), 'M'));
+}
+
+TEST_CASE("points of others are larger than ours, and marks are filled",
+          "[apps][plot][.][gnuplot]") {
+  const Scratch scratch;
+  Chart chart{.title = "marks"};
+  chart.series.push_back({"ours", {{1, 2}, {2, 3}}, Style::points});
+  chart.series.push_back({"theirs", {{1, 1}}, Style::published});
+  REQUIRE(write_svg(scratch.path("a.svg"), chart));
+  const std::string svg = slurp(scratch.path("a.svg"));
+  const auto scale = [&](std::size_t n) {  // of the n-th plot's first mark
+    const std::size_t plot = svg.find("gnuplot_plot_" + std::to_string(n));
+    return std::strtod(svg.c_str() + svg.find("scale(", svg.find("<use", plot)) + 6, nullptr);
+  };
+  CHECK(scale(2) > 1.5 * scale(1));
+  const std::size_t mark = svg.find("<use xlink:href='#gpPt", svg.find("gnuplot_plot_1"));
+  CHECK(svg.substr(mark, 24).find("gpPt6") != std::string::npos);  // gnuplot's mark 7: a disc
 }
 
 TEST_CASE("lines without marks differ where colours repeat", "[apps][plot][.][gnuplot]") {

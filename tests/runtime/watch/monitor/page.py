@@ -237,7 +237,7 @@ def smaller(png):
 
 
 def take_pictures(page):
-    while page.value('frames.length >= 40') is not True:
+    while page.value("maps >= 40 && pictures.size > 0 && $('entries').children.length > 0") is not True:
         time.sleep(0.5)
     page.value("events.close(); heat.abort(); $('state').textContent = 'running'")
     for name, width, dark in (('page', 1000, False), ('page_dark', 1000, True), ('page_phone', 390, False)):
