@@ -44,6 +44,11 @@ class _Search:
                  target_tets: ArrayLike | None, kind: str, outside: str | float | None, tolerance: float, order: int,
                  clamp: bool, pes: int) -> None:
         self.meshes = (_check.mesh(source_points, source_tets, "source_"), _check.mesh(target_points, target_tets, "target_"))
+        if kind == "native":
+            raise Error("kind native needs the elements of a file, which arrays of tetrahedra do not have: choose "
+                        "linear, or the program m2m_transfer")
+        if not len(self.meshes[0][0]):
+            raise Error("source_points: there are none, so no value can be moved; give some")
         if outside is None:
             outside = "keep" if kind.startswith("conservative") else "nearest"
         self.outside = np.nan if isinstance(outside, str) else float(outside)  #: of points without a donor
