@@ -9,16 +9,12 @@ namespace {
 
 using namespace tess::dn;
 
-Surface surface_of(const Array<double>& points, const Array<std::uint32_t>& triangles) {
-  const auto vertices = rows<Vec3>(points);
-  const auto corners = rows<std::array<std::uint32_t, 3>>(triangles);
-  return {{vertices.begin(), vertices.end()}, {corners.begin(), corners.end()}};
-}
-
 /// `margin` is negative where it is not given.
 Field build(const Array<double>& points, const Array<std::uint32_t>& triangles, int n,
             double margin, double thickness, bool two_sided) {
-  const Surface given = surface_of(points, triangles);
+  const auto vertices = rows<Vec3>(points);
+  const auto corners = rows<std::array<std::uint32_t, 3>>(triangles);
+  const Surface given{{vertices.begin(), vertices.end()}, {corners.begin(), corners.end()}};
   const py::gil_scoped_release others_run;
   validate(given);
   const Surface surface = two_sided ? given : outward(given);
