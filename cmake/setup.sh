@@ -16,6 +16,7 @@ build=(
   openmpi-bin libopenmpi-dev libhwloc-dev libboost1.81-dev
   libfmt-dev nlohmann-json3-dev
   libexodusii-dev libtrilinos-zoltan-dev libscotch-dev libeigen3-dev zlib1g-dev libbrotli-dev
+  pybind11-dev python3-dev python3-numpy
 )
 meshes=(gmsh gnuplot-nox)
 tests=(clang-format-16 clang-tidy catch2)

@@ -66,6 +66,12 @@ std::size_t size_of(const AnyIndex& index) {
   return std::visit([](const auto& of) { return of.size(); }, index.of);
 }
 
+template <class Answer>
+void ask(const AnyIndex& index, const Answer& answer) {
+  const py::gil_scoped_release others_run;
+  std::visit(answer, index.of);
+}
+
 /// Objects of query i: found[begin[i]] to found[begin[i + 1]].
 py::tuple within(const AnyIndex& index, const Array<double>& points, const Array<double>& radii) {
   std::vector<std::int64_t> begin{0};
@@ -78,10 +84,7 @@ py::tuple within(const AnyIndex& index, const Array<double>& points, const Array
       begin.push_back(static_cast<std::int64_t>(found.size()));
     }
   };
-  {
-    const py::gil_scoped_release others_run;
-    std::visit(answer, index.of);
-  }
+  ask(index, answer);
   return py::make_tuple(array_of(std::move(begin)), array_of(std::move(found)));
 }
 
@@ -98,10 +101,7 @@ py::tuple nearest(const AnyIndex& index, const Array<double>& points, std::size_
         distances.push_back(std::sqrt(neighbour.distance2));
       }
   };
-  {
-    const py::gil_scoped_release others_run;
-    std::visit(answer, index.of);
-  }
+  ask(index, answer);
   const Shape shape{points.shape(0), static_cast<py::ssize_t>(n)};
   return py::make_tuple(array_of<std::int64_t>(std::move(objects), shape),
                         array_of<double>(std::move(distances), shape));
@@ -126,10 +126,7 @@ py::tuple ray(const AnyIndex& index, const Array<double>& origins,
           "balls");
     }
   };
-  {
-    const py::gil_scoped_release others_run;
-    std::visit(answer, index.of);
-  }
+  ask(index, answer);
   return py::make_tuple(array_of(std::move(objects)), array_of(std::move(at)));
 }
 

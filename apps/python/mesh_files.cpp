@@ -12,34 +12,6 @@ using namespace tess::m2m;
 using tess::ErrorCode;
 using tess::fail;
 
-/// What a file holds, before it becomes arrays.
-struct FileContent {
-  TetMesh mesh;
-  std::vector<Field> of_points, of_cells;
-  std::vector<double> times;
-};
-
-FileContent read(const std::string& path, std::int64_t step) {
-  FileContent content{read_mesh(path), {}, {}, {}};
-  if (path.starts_with("kuhn:")) return content;
-  const FieldFile file(path);
-  content.times = file.times();
-  if (file.fields().empty()) return content;
-  const auto n = static_cast<std::int64_t>(file.n_steps());
-  if (step < -n || step >= n)
-    fail(ErrorCode::out_of_range, "step ", step, ": ", path, " has ", n,
-         " steps, numbered from 0 on, or from -1 back");
-  const auto at = static_cast<std::size_t>(step < 0 ? step + n : step);
-  for (const FileField& field : file.fields()) {
-    if (field.is_part) continue;
-    if (field.place == FieldPlace::vertices)
-      content.of_points.push_back(file.vertex_field(content.mesh, field.name, at));
-    else
-      content.of_cells.push_back(file.tet_field(content.mesh, field.name, at));
-  }
-  return content;
-}
-
 py::dict dict_of(std::vector<Field>& fields) {
   py::dict out;
   for (Field& field : fields) {
@@ -62,16 +34,32 @@ std::vector<Field> fields_of(const std::map<std::string, Array<double>>& given) 
   return fields;
 }
 
+/// Points, cells, dimension, fields of points, of cells, and the times of the file.
 py::tuple read_file(const std::string& path, std::int64_t step) {
-  FileContent content;
+  TetMesh mesh;
+  std::vector<Field> of_points, of_cells;
+  std::vector<double> times;
+  const auto read_fields = [&](const FieldFile& file) {
+    times = file.times();
+    const auto n = static_cast<std::int64_t>(file.n_steps());
+    if (!file.fields().empty() && (step < -n || step >= n))
+      fail(ErrorCode::out_of_range, "step ", step, ": ", path, " has ", n,
+           " steps, numbered from 0 on, or from -1 back");
+    const auto at = static_cast<std::size_t>(step < 0 ? step + n : step);
+    for (const FileField& field : file.fields())
+      if (!field.is_part && field.place == FieldPlace::vertices)
+        of_points.push_back(file.vertex_field(mesh, field.name, at));
+      else if (!field.is_part)
+        of_cells.push_back(file.tet_field(mesh, field.name, at));
+  };
   {
     const py::gil_scoped_release others_run;
-    content = read(path, step);
+    mesh = read_mesh(path);
+    if (!path.starts_with("kuhn:")) read_fields(FieldFile(path));
   }
-  return py::make_tuple(matrix_of<double>(std::move(content.mesh.points)),
-                        matrix_of<VertexId>(std::move(content.mesh.tets), 4),
-                        content.mesh.dimension, dict_of(content.of_points),
-                        dict_of(content.of_cells), content.times);
+  return py::make_tuple(matrix_of<double>(std::move(mesh.points)),
+                        matrix_of<VertexId>(std::move(mesh.tets), 4), mesh.dimension,
+                        dict_of(of_points), dict_of(of_cells), times);
 }
 
 void write_file(const std::string& path, const MeshArrays& arrays,

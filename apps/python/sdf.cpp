@@ -8,19 +8,13 @@ namespace tessera_python {
 namespace {
 
 using namespace tess::dn;
-using tess::ErrorCode;
-using tess::fail;
 
-Surface surface_of(const Array<double>& points, const Array<std::uint32_t>& triangles) {
-  const auto vertices = rows<Vec3>(points);
-  const auto corners = rows<std::array<std::uint32_t, 3>>(triangles);
-  return {{vertices.begin(), vertices.end()}, {corners.begin(), corners.end()}};
-}
-
-/// `thickness` is infinite, and `margin` is negative, where they are not given.
+/// `margin` is negative where it is not given.
 Field build(const Array<double>& points, const Array<std::uint32_t>& triangles, int n,
             double margin, double thickness, bool two_sided) {
-  const Surface given = surface_of(points, triangles);
+  const auto vertices = rows<Vec3>(points);
+  const auto corners = rows<std::array<std::uint32_t, 3>>(triangles);
+  const Surface given{{vertices.begin(), vertices.end()}, {corners.begin(), corners.end()}};
   const py::gil_scoped_release others_run;
   validate(given);
   const Surface surface = two_sided ? given : outward(given);
@@ -33,15 +27,7 @@ Field build(const Array<double>& points, const Array<std::uint32_t>& triangles, 
   return build_field(surface, grid_around(box, n, margin), options);
 }
 
-LookUp kind_of(const std::string& name) {
-  for (std::size_t k = 0; k < std::size(look_up_names); ++k)
-    if (name == look_up_names[k]) return static_cast<LookUp>(k);
-  fail(ErrorCode::bad_argument, "kind: '", name,
-       "' is unknown; choose nearest, tangent or trilinear");
-}
-
-py::tuple sample(const Field& field, const Array<double>& points, const std::string& kind_name) {
-  const LookUp kind = kind_of(kind_name);
+py::tuple sample(const Field& field, const Array<double>& points, std::uint32_t kind) {
   const std::span<const Vec3> all = rows<Vec3>(points);
   std::vector<double> distance, normal;
   {
@@ -51,7 +37,7 @@ py::tuple sample(const Field& field, const Array<double>& points, const std::str
     for (std::size_t i = 0; i < all.size(); ++i)
       for (int k = 0; k < 3; ++k)
         columns[static_cast<std::size_t>(k)][i] = static_cast<float>(component(all[i], k));
-    look_up(field, kind, {columns[0], columns[1], columns[2]},
+    look_up(field, static_cast<LookUp>(kind), {columns[0], columns[1], columns[2]},
             {columns[3], columns[4], columns[5], columns[6]});
     for (std::size_t i = 0; i < all.size(); ++i) {
       const float d = columns[3][i];
@@ -76,10 +62,9 @@ void add_sdf(py::module_& module) {
       .def("sample", &sample)
       .def("grid", [](const Field& field) {
         const auto [low, high] = field.grid.box();
-        const std::array<double, 3> first{low.x, low.y, low.z}, last{high.x, high.y, high.z};
-        return py::make_tuple(
-            field.grid.cell, py::tuple(py::cast(field.grid.n)),
-            py::make_tuple(py::tuple(py::cast(first)), py::tuple(py::cast(last))));
+        return py::make_tuple(field.grid.cell, py::tuple(py::cast(field.grid.n)),
+                              py::make_tuple(low.x, low.y, low.z),
+                              py::make_tuple(high.x, high.y, high.z));
       });
   module.def("read_surface", &read);
 }

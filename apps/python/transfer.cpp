@@ -149,30 +149,20 @@ std::vector<MeshPart> cloud_parts(std::span<const Point> points, std::size_t n_p
 /// Kind, outside, tolerance, order, clamp.
 using Options = std::tuple<std::string, std::string, double, std::int32_t, bool>;
 
-CouplingOptions options_of(const Options& given, bool wants_weights, const TetMesh& source,
-                           const TetMesh& target) {
+CouplingOptions options_of(const Options& given, const TetMesh& source, const TetMesh& target) {
   CouplingOptions options;
   options.kind = parse_transfer_kind(std::get<0>(given));
   options.policy = parse_policy(std::get<1>(given));
   std::tie(std::ignore, std::ignore, options.tolerance, options.order, options.clamp) = given;
   check(options);
-  if (wants_weights) require_weights(options.kind, options.clamp);
-  const TransferKind kind = options.kind;
-  if (kind == TransferKind::native)
-    fail(ErrorCode::bad_argument,
-         "kind native needs the elements of a file, which arrays of tetrahedra do not have: choose "
-         "linear, or the program m2m_transfer");
-  if (source.points.empty())
-    fail(ErrorCode::bad_value,
-         "source_points: there are none, so no value can be moved; give some");
-  if (source.tets.empty() && kind != TransferKind::nearest &&
-      kind != TransferKind::moving_least_squares)
-    fail(ErrorCode::bad_argument, "kind ", name_of(kind),
+  if (source.tets.empty() && options.kind != TransferKind::nearest &&
+      options.kind != TransferKind::moving_least_squares)
+    fail(ErrorCode::bad_argument, "kind ", name_of(options.kind),
          " needs source_tets; without them, choose nearest or moving-least-squares");
-  if (is_conservative(kind) && target.tets.empty())
-    fail(ErrorCode::bad_argument, "kind ", name_of(kind),
+  if (is_conservative(options.kind) && target.tets.empty())
+    fail(ErrorCode::bad_argument, "kind ", name_of(options.kind),
          " integrates over cells of the target: give target_tets");
-  require_dimensions(kind, options.tolerance, source.dimension, target.dimension);
+  require_dimensions(options.kind, options.tolerance, source.dimension, target.dimension);
   return options;
 }
 
@@ -191,7 +181,8 @@ py::tuple transfer(const MeshArrays& from, const MeshArrays& to,
                    const Options& options, bool wants_weights, std::int32_t pes) {
   const TetMesh source = mesh_of(from, "source"), target = mesh_of(to, "target");
   Job of;
-  of.options = options_of(options, wants_weights, source, target);
+  of.options = options_of(options, source, target);
+  if (wants_weights) require_weights(of.options.kind, of.options.clamp);
   of.wants_weights = wants_weights;
   of.n_sources = static_cast<std::int64_t>(source.n_points());
   of.n_targets = static_cast<std::int64_t>(target.n_points());

@@ -8,19 +8,13 @@
 namespace tess {
 namespace {
 
-/// How the task of a host came to its end.
-struct HostedEnd {
-  std::exception_ptr error;
-  bool is_done = false;
-};
-
-Task run_to_end(const std::function<Task()>& main, HostedEnd& end) {
+Task run_to_end(const std::function<Task()>& main, std::exception_ptr& error, bool& is_done) {
   try {
     co_await main();
   } catch (...) {
-    end.error = std::current_exception();
+    error = std::current_exception();
   }
-  end.is_done = true;
+  is_done = true;
 }
 
 }  // namespace
@@ -40,10 +34,11 @@ void run_hosted(std::int32_t n_pes, const std::function<Task()>& main) {
     const std::lock_guard lock(of_report);
     report += "; " + line;
   };
-  HostedEnd end;
-  const int code = run(setup, [&]() -> Task { return run_to_end(main, end); });
-  if (end.error) std::rethrow_exception(end.error);
-  if (code != 0 || !end.is_done)
+  std::exception_ptr error;
+  bool is_done = false;
+  const int code = run(setup, [&]() -> Task { return run_to_end(main, error, is_done); });
+  if (error) std::rethrow_exception(error);
+  if (code != 0 || !is_done)
     fail(ErrorCode::environment, "the run ended before its task, with exit code ", code, report);
 }
 

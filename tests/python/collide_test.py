@@ -122,7 +122,7 @@ class Distances(unittest.TestCase):
         np.testing.assert_allclose(distance, radius - 1, atol=0.012)
         self.assertGreater(np.einsum("ij,ij->i", normal, queries / radius[:, None]).min(), 0.99)
         self.assertEqual(field.shape, (48, 48, 48))
-        np.testing.assert_allclose(np.diff(field.box, axis=0)[0], 47 * field.cell)
+        np.testing.assert_allclose(np.subtract(field.high, field.low), 47 * field.cell)
         far, none = field.sample([[9, 9, 9]])
         self.assertTrue(np.isinf(far[0]) and not none.any())
         rough, _ = field.sample(queries, "nearest")

@@ -1,4 +1,4 @@
-// For apps/python/speed.py: the library's pairs of the boxes in a file of doubles, six per box, in C++
+// For speed.py: the library's pairs of the boxes in a file of doubles, six per box, in C++
 // alone. Prints the seconds of the fastest of N runs, and the number of pairs.
 //
 //     python_pairs_speed FILE N

@@ -32,7 +32,7 @@ with tempfile.TemporaryDirectory() as scratch:
             print("\n".join(difflib.unified_diff(cell[2].splitlines(), printed.getvalue().splitlines(), "page", "run", "", "", 9, "")))
     for picture in pictures:
         drawn = pathlib.Path(picture).read_text(encoding="utf-8")
-        if drawn.count("<rect") + drawn.count("<polyline") < 8 or not drawn.endswith("</svg>\n"):
+        if len(re.findall("<(?:rect|path|text)", drawn)) < 12 or not drawn.endswith("</svg>\n"):
             sys.exit(f"tour: {picture} is no picture")
         if not (page.parent / picture).exists():
             sys.exit(f"tour: {picture} is missing beside the page; run tour.py --write")

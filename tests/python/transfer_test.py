@@ -103,6 +103,14 @@ class Points(unittest.TestCase):
             else:
                 np.testing.assert_array_equal(coupling.weights().toarray(), dense)
 
+    def test_a_coupling_keeps_its_meshes(self):
+        for kind in ("limited", "linear"):
+            points, tets, target = SOURCE.copy(), TETS.astype(np.int32), TARGET.copy()
+            coupling = tessera.Coupling(points, tets, target, kind)
+            before = coupling.apply(FIELD)
+            points[:], tets[:], target[:] = np.nan, 10**6, 0
+            np.testing.assert_array_equal(coupling.apply(FIELD), before)
+
     def test_no_target_points(self):
         result = tessera.transfer(SOURCE, TETS, FIELD, np.zeros((0, 3)))
         self.assertEqual((result.values.shape, result.status.shape, result.donors.shape), ((0,), (0,), (0, 0)))

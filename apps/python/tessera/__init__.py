@@ -8,6 +8,7 @@ raised when the call ends.
 """
 from __future__ import annotations
 
+import copy
 import enum
 import os
 from collections.abc import Sequence
@@ -40,10 +41,13 @@ class Status(enum.IntEnum):
 class _Search:
     """The checked arguments of a Coupling."""
 
-    def __init__(self, source_points: ArrayLike, source_tets: ArrayLike | None, target_points: ArrayLike,
-                 target_tets: ArrayLike | None, kind: str, outside: str | float | None, tolerance: float, order: int,
-                 clamp: bool, pes: int) -> None:
-        self.meshes = (_check.mesh(source_points, source_tets, "source_"), _check.mesh(target_points, target_tets, "target_"))
+    def __init__(self, source: tuple[Any, Any], target: tuple[Any, Any], kind: str, outside: Any, *options: Any) -> None:
+        self.meshes = _check.mesh(*source, "source_"), _check.mesh(*target, "target_")
+        if kind == "native":
+            raise Error("kind native needs the elements of a file, which arrays of tetrahedra do not have: choose "
+                        "linear, or the program m2m_transfer")
+        if not len(self.meshes[0][0]):
+            raise Error("source_points: there are none, so no value can be moved; give some")
         if outside is None:
             outside = "keep" if kind.startswith("conservative") else "nearest"
         self.outside = np.nan if isinstance(outside, str) else float(outside)  #: of points without a donor
@@ -51,7 +55,8 @@ class _Search:
             outside = f"value:{self.outside!r}"
         elif outside not in ("nearest", "keep"):
             raise Error(f"outside: {outside!r} is unknown; give 'nearest', 'keep' or a number")
-        self.options, self.pes = (kind, outside, tolerance, order, clamp), pes
+        *others, self.pes = options
+        self.options = (kind, outside, *others)  #: with tolerance, order, clamp
 
     def rooms(self, fields: Sequence[ArrayLike], initial: ArrayLike | None) -> tuple[list[Any], list[Any]]:
         """Fields as arrays, and arrays for the results, with what points without a donor keep."""
@@ -88,8 +93,9 @@ class Coupling:
                  kind: str = "linear", outside: str | float | None = None, pes: int = 2, *,
                  target_tets: ArrayLike | None = None, tolerance: float = 0.0, order: int = 1,
                  clamp: bool = False) -> None:
-        self._search = _Search(source_points, source_tets, target_points, target_tets, kind, outside, tolerance,
+        self._search = _Search((source_points, source_tets), (target_points, target_tets), kind, outside, tolerance,
                                order, clamp, pes)
+        self._search.meshes = copy.deepcopy(self._search.meshes)  # the caller's arrays may change later
         has_matrix = not (clamp or kind == "limited" or kind.startswith("conservative"))
         self.status, self.distance, self._weights, self.notes = self._search.run([], [], has_matrix)
 
@@ -125,8 +131,7 @@ class Coupling:
 
 @dataclass(repr=False)
 class TransferResult:
-    """What transfer() returns. values: (k,) or (k, c) float64. status, distance, notes: as in Coupling.
-    """
+    """What transfer() returns. values: (k,) or (k, c) float64. status, distance, notes: as in Coupling."""
 
     values: NDArray[np.float64]
     status: NDArray[np.uint8]
@@ -140,8 +145,8 @@ class TransferResult:
 
     @cached_property
     def donors(self) -> NDArray[np.int64]:
-        """(k, w): the source points that each value comes from, padded with -1. The first use searches
-        once more; kinds without weights raise Error."""
+        """(k, w): the source points that each value comes from, padded with -1. The first use searches once
+        more, in the arrays as they are then; kinds without weights raise Error."""
         _, indices, indptr, shape = self._search.run([], [], True)[2].csr()
         sizes = np.diff(indptr)
         out = np.full((shape[0], int(sizes.max(initial=0))), -1, dtype=np.int64)
@@ -158,7 +163,7 @@ def transfer(source_points: ArrayLike, source_tets: ArrayLike | None, values: Ar
     values: (n,) or (n, c), per source point. initial: (k,) or (k, c), kept by points without a donor.
     All else as in Coupling. The result does not depend on `pes`.
     """
-    search = _Search(source_points, source_tets, target_points, target_tets, kind, outside, tolerance, order, clamp, pes)
+    search = _Search((source_points, source_tets), (target_points, target_tets), kind, outside, tolerance, order, clamp, pes)
     given, out = search.rooms([values], initial)
     status, distance, _, notes = search.run(given, out, False)
     return TransferResult(out[0], status, distance, notes, search)

@@ -1,14 +1,14 @@
-"""Small pictures as SVG, without a plotting library: bars, lines, boxes, and slices of fields."""
+"""Small pictures as SVG, without a plotting library: bars, boxes, and slices of fields."""
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from xml.sax.saxutils import escape
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-COLOURS = ("#4477aa", "#ee6677", "#228833", "#ccbb44", "#66ccee", "#aa3377")  # they print
+COLOURS = ("#4477aa", "#ee6677", "#228833", "#ccbb44")  # they print
 
 
 class _Canvas:
@@ -28,9 +28,8 @@ class _Canvas:
         self._parts.append(f'<rect x="{x:.1f}" y="{y:.1f}" width="{width:.1f}" height="{height:.1f}" '
                            f'fill="{fill}" stroke="{stroke}"/>')
 
-    def line(self, points: Iterable[tuple[float, float]], stroke: str, width: float) -> None:
-        path = " ".join(f"{x:.1f},{y:.1f}" for x, y in points)
-        self._parts.append(f'<polyline points="{path}" fill="none" stroke="{stroke}" stroke-width="{width:g}"/>')
+    def paths(self, of_colour: dict[str, str]) -> None:
+        self._parts.extend(f'<path fill="{colour}" d="{path}"/>' for colour, path in of_colour.items())
 
     def write(self, path: str | os.PathLike[str]) -> None:
         with open(path, "w", encoding="utf-8") as file:
@@ -53,28 +52,6 @@ def bars(path: str | os.PathLike[str], title: str, names: Sequence[str],
     canvas.write(path)
 
 
-def lines(path: str | os.PathLike[str], title: str, x_label: str, x: Sequence[float],
-          series: dict[str, Sequence[float]]) -> None:
-    """Lines over x, both axes logarithmic; every value is above 0. Labels at the last points."""
-    canvas = _Canvas(520, 340, title)
-    u = np.log10(np.asarray(x, dtype=float))
-    all_v = np.log10(np.asarray(list(series.values()), dtype=float))
-    low, high = np.floor(all_v.min()), np.ceil(all_v.max())
-    to_x = 60 + 300 * (u - u[0]) / (u[-1] - u[0])
-    for tick in np.arange(low, high + 1):
-        y = 290 - 250 * (tick - low) / (high - low)
-        canvas.line([(60, y), (360, y)], "#dddddd", 1)
-        canvas.text(54, y + 4, f"{10 ** tick:.{max(0, int(-tick))}f}", "end", 11)
-    for at, value in zip(to_x, x):
-        canvas.text(at, 306, f"{value:g}", "middle", 11)
-    canvas.text(210, 326, x_label, "middle")
-    for k, (name, v) in enumerate(zip(series, all_v)):
-        y = 290 - 250 * (v - low) / (high - low)
-        canvas.line(list(zip(to_x, y)), COLOURS[k % len(COLOURS)], 2)
-        canvas.text(368, y[-1] + 4, name)
-    canvas.write(path)
-
-
 def boxes(path: str | os.PathLike[str], title: str, lo: ArrayLike, hi: ArrayLike, marked: ArrayLike) -> None:
     """Rectangles (n, 2) to (n, 2); the marked ones (n,) in another colour."""
     lo, hi = np.asarray(lo, dtype=float), np.asarray(hi, dtype=float)
@@ -94,10 +71,12 @@ def image(path: str | os.PathLike[str], title: str, values: ArrayLike) -> None:
     size = 400 / max(values.shape)
     canvas = _Canvas(420, 450, f"{title} (darkest: {most:.3g})")
     far = np.where(np.isnan(finite), 230, 230 - 23 * np.ceil(10 * np.abs(np.nan_to_num(finite)) / most)).astype(int)
+    paths: dict[str, str] = {}  # per colour
     for row, (line, is_below) in enumerate(zip(far[::-1], finite[::-1] < 0)):
         ends = np.flatnonzero(np.diff(line * 2 + is_below, append=-1)) + 1  # of runs of one colour
         for begin, end in zip([0, *ends[:-1]], ends):
-            level = f"{line[begin]:02x}"
-            canvas.rect(10 + size * begin, 40 + size * row, size * (end - begin), size + 0.3,
-                        f"#{level}{level}ff" if is_below[begin] else f"#ff{level}{level}")
+            level, x, width = f"{line[begin]:02x}", 10 + size * begin, size * (end - begin)
+            colour = f"#{level}{level}ff" if is_below[begin] else f"#ff{level}{level}"
+            paths[colour] = paths.get(colour, "") + f"M{x:g} {40 + size * row:g}h{width:g}v{size + 0.2:g}h-{width:g}z"
+    canvas.paths(paths)
     canvas.write(path)

@@ -7,24 +7,27 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _check, _tessera
+from ._tessera import Error
 
 __all__ = ["Field", "build", "read_surface"]
 
 
+KINDS = ("nearest", "tangent", "trilinear")
+
+
 class Field:
-    """cell: the edge of a voxel. shape: voxels per axis. box: the centres of the first and last voxel."""
+    """cell: the edge of a voxel. shape: voxels per axis. low, high: the centres of the first and the last voxel."""
 
     def __init__(self, field: _tessera.Field) -> None:
         self._field = field
-        self.cell: float
-        self.shape: tuple[int, int, int]
-        self.box: tuple[tuple[float, float, float], tuple[float, float, float]]
-        self.cell, self.shape, self.box = field.grid()
+        self.cell, self.shape, self.low, self.high = field.grid()
 
     def sample(self, points: ArrayLike, kind: str = "trilinear") -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Distances (m,) and unit normals (m, 3) at points (m, 3). kind: trilinear or tangent (errors of
         second order in the cell), nearest. Outside of the grid: inf and zeros."""
-        return self._field.sample(_check.points(points, "points"), kind)
+        if kind not in KINDS:
+            raise Error(f"kind: {kind!r} is unknown; choose one of {', '.join(KINDS)}")
+        return self._field.sample(_check.points(points, "points"), KINDS.index(kind))
 
 
 def build(points: ArrayLike, triangles: ArrayLike, n: int = 64, *, margin: float | None = None,

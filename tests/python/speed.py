@@ -1,7 +1,7 @@
 """Speed of tessera beside the C++ programs, and beside SciPy where it can be imported. By hand:
 
     ninja -C build/release tessera_python m2m_transfer python_pairs_speed
-    PYTHONPATH=build/release/python /usr/bin/python3 apps/python/speed.py build/release/bin [N]
+    PYTHONPATH=build/release/python /usr/bin/python3 tests/python/speed.py build/release/bin [N]
 
 Each row is checked: both give the same answer. Times are those of the fastest of N (5) turns, which alternate; `ratio`
 is the time of tessera over that of the peer. Arrays are there before, and results are arrays.
@@ -12,7 +12,6 @@ import sys
 import tempfile
 import time
 
-del sys.path[0]  # beside this script stands the package without its extension
 import numpy as np
 import tessera
 
