@@ -22,7 +22,6 @@ foreach(name IN LISTS exported)
   tess_pkg_config(${name})
 endforeach()
 
-install(DIRECTORY "${PROJECT_SOURCE_DIR}/apps/particles/scenes" DESTINATION share/doc/tessera COMPONENT bin FILES_MATCHING PATTERN "*.json")
 set(tutorial "${PROJECT_SOURCE_DIR}/apps/tutorial")
 install(DIRECTORY "${tutorial}/" DESTINATION share/doc/tessera/examples COMPONENT dev FILES_MATCHING PATTERN "*.cpp" PATTERN "README.md")
 install(FILES "${tutorial}/installed.cmake" DESTINATION share/doc/tessera/examples RENAME CMakeLists.txt COMPONENT dev)

@@ -46,6 +46,9 @@ set(CPACK_COMPONENT_PYTHON_DESCRIPTION "The module tessera of Python: transfer, 
 
 # Components that are there: no programs with TESS_APPS=OFF, no Python without pybind11.
 get_cmake_property(there COMPONENTS)
+if(NOT TESS_APPS)
+  list(REMOVE_ITEM there bin)
+endif()
 foreach(component IN ITEMS bin dev python)
   if(component IN_LIST there)
     list(APPEND CPACK_COMPONENTS_ALL ${component})
