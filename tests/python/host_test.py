@@ -59,9 +59,11 @@ class Errors(unittest.TestCase):
             with self.assertRaisesRegex(tessera.Error, words, msg=str(changes.keys())):
                 call(**changes)
             self.assertNotIn("\n", words)
-        limited = tessera.Coupling(POINTS, TETS, TARGET[:9], "limited")
-        with self.assertRaisesRegex(tessera.Error, "kind limited has no weights"):
-            limited.weights_csr()
+        for kind in ("moving-least-squares", "limited"):
+            limited = tessera.Coupling(POINTS, TETS, TARGET[:9], kind)
+            for get in (limited.weights_csr, limited.weights, lambda: call(kind=kind).donors):
+                with self.assertRaisesRegex(tessera.Error, f"kind {kind} has no weights here"):
+                    get()
         np.testing.assert_allclose(limited.apply(FIELD), TARGET[:9] @ [1, 2, 3])
         self.assertTrue(issubclass(tessera.Error, ValueError))
 

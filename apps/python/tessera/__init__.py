@@ -57,6 +57,7 @@ class _Search:
             raise Error(f"outside: {outside!r} is unknown; give 'nearest', 'keep' or a number")
         *others, self.pes = options
         self.options = (kind, outside, *others)  #: with tolerance, order, clamp
+        self.has_weights = kind in ("linear", "second-order", "nearest", "projection") and not others[-1]
 
     def rooms(self, fields: Sequence[ArrayLike], initial: ArrayLike | None) -> tuple[list[Any], list[Any]]:
         """Fields as arrays, and arrays for the results, with what points without a donor keep."""
@@ -67,6 +68,11 @@ class _Search:
             kept = _check.values(initial, "initial", n_targets, "target points")
             result[:] = _check.shaped(kept, "initial", result.shape, f"{result.shape}, as the values have it")
         return given, out
+
+    def require_weights(self) -> None:
+        if not self.has_weights:
+            raise Error(f"kind {self.options[0]} has no weights here, since its values are limited, clamped, or solve a "
+                        "system: choose linear, second-order, nearest or projection, without clamp")
 
     def run(self, fields: list[Any], results: list[Any], weights: bool) -> tuple[Any, ...]:
         return _tessera.transfer(*self.meshes, fields, results, self.options, weights, self.pes)
@@ -85,8 +91,8 @@ class Coupling:
     status: (k,) uint8 of Status. distance: (k,) to the source, 0 inside; None for conservative kinds.
     notes: counts of target points that are worth a look, such as {"lower_order": 12}.
 
-    Kinds whose values are a matrix times the source's values keep the matrix. The others (limited,
-    conservative ones, and clamp) have none: each apply() searches again, once for all its fields.
+    Kinds linear, second-order, nearest and projection keep the matrix of their weights. The others, and
+    clamp, have none: each apply() searches again, once for all its fields.
     """
 
     def __init__(self, source_points: ArrayLike, source_tets: ArrayLike | None, target_points: ArrayLike,
@@ -96,8 +102,7 @@ class Coupling:
         self._search = _Search((source_points, source_tets), (target_points, target_tets), kind, outside, tolerance,
                                order, clamp, pes)
         self._search.meshes = copy.deepcopy(self._search.meshes)  # the caller's arrays may change later
-        has_matrix = not (clamp or kind == "limited" or kind.startswith("conservative"))
-        self.status, self.distance, self._weights, self.notes = self._search.run([], [], has_matrix)
+        self.status, self.distance, self._weights, self.notes = self._search.run([], [], self._search.has_weights)
 
     def apply(self, *fields: ArrayLike, initial: ArrayLike | None = None) -> Any:
         """The values at the target points of one field, (n,) or (n, c) → (k,) or (k, c); of several
@@ -113,16 +118,14 @@ class Coupling:
     def weights_csr(self) -> tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.int64], tuple[int, int]]:
         """(data, indices, indptr, shape) of the matrix in SciPy's CSR layout: target = matrix × source.
         A row without entries is a point without a donor."""
-        if self._weights is None:
-            raise Error(f"kind {self._search.options[0]} has no weights: its values are limited, or solve a "
-                        "system; choose linear or second-order, without clamp")
+        self._search.require_weights()
         return self._weights.csr()
 
     def weights(self) -> Any:
         """The same as a scipy.sparse.csr_matrix."""
         data, indices, indptr, shape = self.weights_csr()
         try:
-            from scipy.sparse import csr_matrix
+            from scipy.sparse import csr_matrix  # type: ignore[import]
         except ImportError as error:
             raise ImportError("weights() needs SciPy, which cannot be imported here: install it, or take "
                               "weights_csr(), which gives (data, indices, indptr, shape)") from error
@@ -147,6 +150,7 @@ class TransferResult:
     def donors(self) -> NDArray[np.int64]:
         """(k, w): the source points that each value comes from, padded with -1. The first use searches once
         more, in the arrays as they are then; kinds without weights raise Error."""
+        self._search.require_weights()
         _, indices, indptr, shape = self._search.run([], [], True)[2].csr()
         sizes = np.diff(indptr)
         out = np.full((shape[0], int(sizes.max(initial=0))), -1, dtype=np.int64)
