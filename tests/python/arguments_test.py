@@ -1,6 +1,6 @@
 """Arguments at random, most of them wrong: each call gives a result or an exception of one line, and none ends the interpreter.
 
-    arguments_test.py [N [SEED]]: N calls (800) from this seed (1)
+    arguments_test.py [N [SEED]]: N calls (600) from this seed (1)
 """
 import sys
 
@@ -8,20 +8,25 @@ import numpy as np
 import tessera
 from oracles import kuhn
 
-n_calls, seed = (int(word) for word in (sys.argv[1:] + ["800", "1"][len(sys.argv) - 1:]))
+n_calls, seed = (int(word) for word in (sys.argv[1:] + ["600", "1"][len(sys.argv) - 1:]))
 rng = np.random.default_rng(seed)
 POINTS, TETS = kuhn(2, 0.2)
 MANGLE = [lambda a: a * 0, lambda a: a * [1, 1, 0], lambda a: a * 1e90, lambda a: a * 1e300, lambda a: a * 1e-100, lambda a: a[:, :2],
           lambda a: np.where(rng.random(a.shape) < 0.1, np.nan, a), lambda a: np.repeat(a, 3, 0), lambda a: a.astype(np.float32),
-          lambda a: np.rint(3 * a).astype(int), lambda a: None, lambda a: a.tolist(), *[lambda a: a] * 8]
+          lambda a: np.rint(3 * a).astype(int), lambda a: None, lambda a: a.tolist()]
 
 
 def any_of(*things):
     return things[rng.integers(len(things))]
 
 
+def mostly(*things):
+    """The first one, in nine of ten cases."""
+    return things[0] if rng.random() < 0.9 else any_of(*things)
+
+
 def points():
-    return any_of(*MANGLE)(any_of(POINTS, rng.random((rng.integers(0, 40), 3)) * 10.0 ** rng.integers(-3, 3)))
+    return mostly(lambda a: a, *MANGLE)(any_of(POINTS, rng.random((rng.integers(0, 40), 3)) * 10.0 ** rng.integers(-3, 3)))
 
 
 def numbers(n, *shape):
@@ -36,7 +41,7 @@ def cells(of):
 
 def values(of):
     n = len(of) if of is not None else 5
-    return any_of(rng.random(n), rng.random(n), rng.random((n, rng.integers(0, 4))), np.full(n, np.nan), np.full(n, 1e308), rng.random(n + 1))
+    return mostly(rng.random(n), rng.random((n, rng.integers(0, 4))), np.full(n, np.nan), np.full(n, 1e308), rng.random(n + 1))
 
 
 def objects():
@@ -47,14 +52,14 @@ def objects():
 
 
 def transfer():
-    source, target = any_of(POINTS, points()), points()
-    tets = TETS if source is POINTS and rng.random() < 0.7 else cells(source)
+    source, target = mostly(POINTS, points()), points()
+    tets = mostly(TETS if source is POINTS else None, cells(source))
     target_tets = cells(target)
     if rng.random() < 0.4:
         target, target_tets = kuhn(rng.integers(1, 4))
-    options = {"kind": any_of(*tessera.KINDS, "native", "?"), "outside": any_of(None, None, "nearest", "keep", 3.0, np.nan, "value:1"),
-               "tolerance": any_of(0.0, 0.0, 0.1, -1.0, np.nan, 1e101), "order": any_of(1, 1, 2, 0), "clamp": any_of(False, False, True),
-               "pes": any_of(1, 2, 3, 0), "target_tets": target_tets}
+    options = {"kind": any_of(*tessera.KINDS, "native", "?"), "outside": mostly(None, "nearest", "keep", 3.0, np.nan, "value:1"),
+               "tolerance": mostly(0.0, 0.1, -1.0, np.nan, 1e101), "order": mostly(1, 2, 0), "clamp": mostly(False, True),
+               "pes": mostly(2, 1, 3, 0), "target_tets": target_tets}
     if rng.random() < 0.6:
         return any_of(lambda r: r, lambda r: r.donors)(tessera.transfer(source, tets, values(source), target, **options))
     coupling = tessera.Coupling(source, tets, target, **options)
@@ -73,8 +78,8 @@ def queries():
 
 def distances():
     of = points()
-    field = tessera.sdf.build(of, any_of(cells(of), numbers(len(of or []) if isinstance(of, list) else 5, 10, 3)), any_of(4, 8, 16, 3, -1),
-                              margin=any_of(None, 0.1, 1.0, -1.0, np.nan, 1e200), thickness=any_of(np.inf, 1.0, 0.0, np.nan),
+    field = tessera.sdf.build(of, mostly(numbers(10, 10, 3), cells(of)), mostly(8, 4, 16, 3, -1),
+                              margin=mostly(None, 0.1, 1.0, -1.0, np.nan, 1e200), thickness=mostly(np.inf, 1.0, 0.0, np.nan),
                               two_sided=any_of(True, False))
     return field.sample(points(), any_of(*tessera.sdf.KINDS))
 
