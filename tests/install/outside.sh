@@ -6,7 +6,7 @@
 #     outside.sh source SOURCE COMPONENTS…       with add_subdirectory
 #
 # With an installation its programs, the tutorial and what tess_new makes are run, too. CXX is the compiler; MPIEXEC is empty where
-# Tessera is built without MPI.
+# Tessera is built without MPI, PYTHON where it is without Python's module.
 set -euo pipefail
 way=$1
 from=$(cd "$2" && pwd)
@@ -107,6 +107,10 @@ if [[ $way == packages ]]; then
   says 'libc6 .*libopenmpi3' dpkg-deb -f "$scratch/packages/tessera-bin$name" Depends
   says 'libboost1.81-dev, libfmt-dev.*libopenmpi-dev' dpkg-deb -f "$scratch/packages/libtessera-dev$name" Depends
   says '^ Section: science$' dpkg-deb --info "$scratch/packages/tessera-bin$name"
+  if [[ -n ${PYTHON:-} ]]; then
+    says '^tour: [0-9]+ cells, 4 pictures$' env "PYTHONPATH=$prefix/lib/python3/dist-packages" PYTHONDONTWRITEBYTECODE=1 \
+      "$PYTHON" "$here/../python/tour.py" "$here/../../apps/python/TOUR.md"
+  fi
 fi
 if [[ $way != source ]]; then
   for component in "${components[@]}"; do
