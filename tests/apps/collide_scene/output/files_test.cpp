@@ -97,7 +97,7 @@ TEST_CASE("the picture shows scenes of points, far away and of one place",
 TEST_CASE("a scene in which nearly all collide has many colours", "[apps][collide_scene]") {
   const Scene planes = make_scene("planes:512");
   std::vector<std::uint32_t> n_hits(planes.n_objects(), 8);
-  for (std::size_t i = 0; i < n_hits.size(); i += 2) n_hits[i] = 5 + i % 3;
+  for (std::uint32_t i = 0; i < n_hits.size(); i += 2) n_hits[i] = 5 + i % 3;
   const std::string svg = picture(planes, n_hits);
   CHECK_THAT(svg, Contains("hits per object: 5"));
   // Half of the objects have the most hits: they are in the middle of the upper half of the ramp.
