@@ -4,10 +4,10 @@
 set -euo pipefail
 cd "$1"
 limits=(
-  m2m_transfer 5600
-  libraries 7000
-  tests 21300
-  everything 34800
+  m2m_transfer 5750
+  libraries 7200
+  tests 21800
+  everything 36600
 )
 # objects NAME: those that the build has.
 objects() {
