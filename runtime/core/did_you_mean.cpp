@@ -27,6 +27,7 @@ std::size_t distance(std::string_view a, std::string_view b) {
 std::string nearest_name(std::string_view word, std::string_view names) {
   constexpr std::string_view of_names =
       "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-";
+  if (word.find(' ') != word.npos) return {};  // "block 4": not a part of a name
   std::string_view nearest;
   const std::size_t n_letters = word.starts_with('-') ? word.size() : word.size() + 2;
   std::size_t bound = std::min<std::size_t>(3, n_letters / 4 + 1);

@@ -12,6 +12,7 @@ TEST_CASE("the nearest name is the one with the fewest letters changed, if they 
   CHECK(tess::nearest_name("value", kinds) == "value");
   CHECK(tess::nearest_name("perhaps", kinds).empty());
   CHECK(tess::nearest_name("", kinds).empty());
+  CHECK(tess::nearest_name("nearest 4", kinds).empty());
   CHECK(tess::nearest_name("linear", "").empty());
   CHECK(tess::nearest_name("--pse", "-h,--help --pes --sim") == "--pes");
   CHECK(tess::nearest_name("-x", "-h,--help -y").empty());
