@@ -22,7 +22,8 @@ function(tess_visit target)
     elseif(NOT kind STREQUAL "INTERFACE_LIBRARY")
       list(PREPEND tess_others $<TARGET_LINKER_FILE:${target}>)
     endif()
-  else()  # a file or an option
+  else()  # a file, an option, or the name of a library
+    string(REGEX REPLACE "^([a-z0-9_]+)$" "-l\\1" target "${target}")
     list(APPEND tess_others ${target})
   endif()
   set(tess_seen ${tess_seen} PARENT_SCOPE)
