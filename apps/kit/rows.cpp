@@ -169,12 +169,12 @@ Json json_rows(std::span<const Heading> headings, const Json& cells) {
   return out;
 }
 
-void add_point(Chart& chart, const std::string& series, const Json& x, const Json& y) {
+Point* add_point(Chart& chart, const std::string& series, const Json& x, const Json& y) {
   const Point point{number(x), number(y)};
-  if (std::isnan(point.x) || std::isnan(point.y)) return;
+  if (std::isnan(point.x) || std::isnan(point.y)) return nullptr;
   const auto same = std::ranges::find(chart.series, series, &Series::name);
   Series& found = same != chart.series.end() ? *same : chart.series.emplace_back(Series{series});
-  found.points.push_back(point);
+  return &found.points.emplace_back(point);
 }
 
 std::optional<double> fitted_order(const Json& x, const Json& y) {

@@ -63,8 +63,8 @@ Json of(const decltype(detail::row_of(member))& row) {
 [[nodiscard]] Json json_rows(std::span<const Heading> headings, const Json& cells);
 
 /// Appends a point to the series of this name, which is made where there is none. A null is no
-/// point.
-void add_point(Chart& chart, const std::string& series, const Json& x, const Json& y);
+/// point. Returns the point, to add the ends of its error bar; null if there is none.
+Point* add_point(Chart& chart, const std::string& series, const Json& x, const Json& y);
 
 template <class Row>
 class Rows {

@@ -32,7 +32,7 @@ struct Job {
   std::optional<WeightMatrix> weights;
   bool wants_weights = false;
 };
-/// Of the run; runs take turns.
+/// The job of the run; runs take turns.
 Job* job = nullptr;
 
 std::size_t position(tess::m2m::GlobalId id) {

@@ -20,7 +20,7 @@ struct PeLoad {
   double seconds = 0;  ///< since the measurement began
   double busy = 0;     ///< of these, not waiting for messages
   double speed = 1;    ///< relative to other PEs
-  /// Of the busy ones, in code of elements and of the main program; below 0: not measured.
+  /// What elements and the main program took of `busy`; it is below 0 if it was not measured.
   double in_elements = -1;
   double largest = 0;     ///< in the code of the element here that took most
   std::string element{};  ///< its name; empty: elements were not measured

@@ -61,7 +61,7 @@ class Measuring {
   /// Since start_elements(). Without it: since the start, and only what --monitor measures. Called
   /// in a step.
   [[nodiscard]] PeLoad load() const;
-  /// Of code of the main program.
+  /// It counts what code of the main program takes on this PE.
   [[nodiscard]] LoadRecord& main_record() { return main_record_; }
 
   [[nodiscard]] Trace* trace() const { return trace_.get(); }

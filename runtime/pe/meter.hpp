@@ -103,7 +103,7 @@ class Meter {
 
   /// Ticks in steps that ran a message, without stolen time.
   [[nodiscard]] std::uint64_t busy() const { return busy_; }
-  /// The same with the step that runs now; called in a step.
+  /// Adds the step that runs now to them. Called in a step.
   [[nodiscard]] std::uint64_t busy_until_now() const { return busy_ + (now() - step_began_); }
   /// Ticks in scopes with a record.
   [[nodiscard]] std::uint64_t in_records() const { return in_records_; }

@@ -65,7 +65,7 @@ void census_arrives(Pe& pe, Runtime::Census&& census) {
   pe.runtime().on_census(pe, std::move(census));
 }
 
-// Of each kind per PE, about 60 MB, and of all PEs, which process 0 keeps at the end.
+// A PE keeps so many records of each kind (about 60 MB); at the end process 0 keeps those of all.
 constexpr std::size_t most_trace_records = 1'000'000, most_of_job = 64'000'000;
 constexpr std::size_t reserve_bytes = 1U << 20U;
 

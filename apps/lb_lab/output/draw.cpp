@@ -100,9 +100,9 @@ void Drawings::write(const std::string& directory) const {
   for (const Run& run : runs_) {
     const Row& row = run.row;
     const double per_pe = row.per_pe;
-    kit::add_point(time, row.strategy, per_pe, 1e3 * row.seconds_total / row.n_iterations);
-    const auto series = std::ranges::find(time.series, row.strategy, &kit::Series::name);
-    series->points.back().high = 1e3 * std::ranges::max(row.seconds_of_runs) / row.n_iterations;
+    if (kit::Point* const point =
+            kit::add_point(time, row.strategy, per_pe, 1e3 * row.seconds_total / row.n_iterations))
+      point->high = 1e3 * std::ranges::max(row.seconds_of_runs) / row.n_iterations;
     if (std::ranges::count(time.x_ticks, per_pe) == 0) time.x_ticks.push_back(per_pe);
     if (row.per_pe != best.row.per_pe) continue;
     balance.series.push_back(curve_of(row));

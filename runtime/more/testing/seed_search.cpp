@@ -69,6 +69,9 @@ int run_disturbed(const std::function<int()>& program, std::uint64_t seed) {
     disorder.emplace(*current_trial(), simulated, options, 0.5);
   };
   struct Reset {
+    Reset() = default;
+    Reset(const Reset&) = delete;
+    Reset& operator=(const Reset&) = delete;
     ~Reset() { tess::detail::disturb = nullptr; }
   } const reset;
   tess::detail::disturb = &disturb;

@@ -39,7 +39,7 @@ class TraceWriter {
   TraceWriter(const std::string& path, const std::vector<TraceOfPe>& pes)
       : path_(path), pes_(pes), file_(std::fopen(path.c_str(), "w"), &std::fclose) {
     if (!file_) fail(ErrorCode::environment, "--trace ", path, ": the file cannot be written");
-    put("{\"displayTimeUnit\":\"ns\",\"traceEvents\":[");
+    put(R"({"displayTimeUnit":"ns","traceEvents":[)");
     for (const TraceOfPe& of : pes)
       for (const Trace::Slice& slice : of.trace->slices())
         if (is_users(slice)) shown_.push_back(arrow(slice.source, slice.number));
@@ -137,9 +137,9 @@ std::string trace_name(std::uint32_t action) {
   return is_of_runtime(name) ? of_runtime : plain_name(name);
 }
 
-/// Of each process: the least time from a send to the slice of its message, by the clocks as they
-/// are, from process 0 and to it. The delays cancel out in half their difference. Counters of like
-/// machines have one rate, more exactly than each process has measured it.
+/// It finds, for each process, the least time from a send to the slice of its message, by the clocks
+/// as they are, from process 0 and to it. The delays cancel out in half their difference. Counters of
+/// like machines have one rate, more exactly than each process has measured it.
 void align_clocks(std::vector<TraceOfPe>& pes) {
   for (TraceOfPe& pe : pes)
     if (const double rate = pes.front().seconds_per_tick;

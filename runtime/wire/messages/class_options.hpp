@@ -18,7 +18,8 @@ struct OptionNames {
 template <class C>
 struct WithOptionNames : C, OptionNames {
  protected:
-  ~WithOptionNames() = default;  // C may be an interface whose destructor is protected
+  // C may be an interface whose destructor is protected.
+  ~WithOptionNames() = default;  // NOLINT(modernize-use-override): C may have no virtual one
 };
 
 template <class C>
