@@ -256,7 +256,7 @@ std::string options_help() {
       "              seed=7 (adversarial delivery order), migrate=0.1 (forced migrations),\n"
       "              seeds=1..200 (once per seed: which order of messages prints something "
       "else?),\n"
-      "              compare=WORD (and only lines with this word count),\n"
+      "              compare=WORD (compares only this word and what follows it on a line),\n"
       "              file=FILE (the machine that bench --calibrate FILE measured)\n"
       "  --message-memory SIZE\n"
       "              most bytes of messages under way from one process to another (default "

@@ -59,6 +59,10 @@ for wrong in "seeds=5..2" "seeds=5" "compare=x" "seeds=1..3,seed=2" "seeds=1..3,
   refuses "--sim [a-z]*: .*" "$bin/ring" --sim "$wrong"
 done
 refuses "--sim seeds=1..3 --pes 2" "$bin/ring" --pes 2 --sim seeds=1..3
+refuses "a second run in the plain order differs: exit code 2" "$bin/stencil" --sim seeds=1..3,compare=hash --checkpoint "$scratch/twice"
+"$bin/stencil" --sim seeds=1..3,compare=hash >"$scratch/out" 2>&1 && grep -qE "^hash [0-9a-f]+$" "$scratch/out" && pass || fail "what follows a word is not compared alone"
+TESS_TEST_REPEAT=seed=1,keep=deadbeef "$bin/stencil" --sim seeds=1..3,compare=hash >"$scratch/out" 2>&1
+grep -q "seed 1 lacks 1 of 1 decisions here" "$scratch/out" && pass || fail "a decision of another program is not named"
 "$bin/hello" >/dev/full 2>"$scratch/err"
 [[ $? -eq 2 ]] && grep -q "standard output: a part of it could not be written" "$scratch/err" && pass || fail "lost output is no error"
 refuses "--pes: 100000 is not a whole number from 1 to 4096" "$bin/hello" --pes 100000

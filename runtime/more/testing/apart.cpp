@@ -12,6 +12,7 @@
 #include <cstdio>
 #include <fcntl.h>
 #include <span>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <system_error>
 #include <unistd.h>
@@ -23,6 +24,8 @@ namespace {
 // Of a child process.
 int child_writes_to = -1;
 Trial* child_trial = nullptr;
+unsigned most_seconds = 0;
+volatile std::sig_atomic_t is_late = 0;
 
 DecisionIds sorted(DecisionIds ids) {
   std::sort(ids.begin(), ids.end());
@@ -63,9 +66,33 @@ void leave_child_on_crash(int signal) {
   leave_child(outcome_so_far(signal_failure(signal), *child_trial));
 }
 
+[[noreturn]] void leave_late() {
+  leave_child(
+      outcome_so_far(text("it does not end; it was given ", most_seconds, " s"), *child_trial));
+}
+
+/// An entry method that does not end asks for nothing, and is left at the second alarm.
+void on_alarm(int signal) {
+  if (is_late != 0) {
+    std::signal(signal, SIG_DFL);
+    ::alarm(5);
+    leave_late();
+  }
+  is_late = 1;
+  ::alarm(2);
+}
+
+void on_exit_of_child(int code, void*) {
+  leave_child(outcome_so_far(text("it ended the process with exit code ", code), *child_trial));
+}
+
 [[noreturn]] void run_as_child(const Program& program, std::uint64_t seed, Trial trial, int file) {
   child_writes_to = file;
   child_trial = &trial;
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  ::on_exit(&on_exit_of_child, nullptr);
+  std::signal(SIGALRM, &on_alarm);
+  ::alarm(most_seconds);
   const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
   ::dup2(nowhere, STDOUT_FILENO);
   ::dup2(nowhere, STDERR_FILENO);
@@ -92,6 +119,14 @@ std::vector<std::byte> read_all_of(int file) {
 }
 
 }  // namespace
+
+void limit_children(unsigned seconds) {
+  most_seconds = seconds;
+}
+
+void leave_if_late() {
+  if (is_late != 0) leave_late();
+}
 
 Outcome run_here(const Program& program, std::uint64_t seed, Trial& trial) {
   const InTrial in(trial);

@@ -30,6 +30,12 @@ struct Outcome {
 /// Runs it in a child process. Throws Error if there can be none.
 [[nodiscard]] Outcome run_apart(const Program& program, std::uint64_t seed, const Trial& trial);
 
+/// From now on a child process has so many seconds; 0: any number.
+void limit_children(unsigned seconds);
+
+/// A child whose time is over ends here. A run asks at every step.
+void leave_if_late();
+
 /// Signals of a program that crashes.
 inline constexpr std::array crashes{SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT};
 

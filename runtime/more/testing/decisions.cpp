@@ -3,6 +3,7 @@
 #include "runtime/arrays/elements/element.hpp"
 #include "runtime/core/hash.hpp"
 #include "runtime/core/text.hpp"
+#include "runtime/more/testing/apart.hpp"
 #include "runtime/pe/queues/outbox.hpp"
 #include "runtime/wire/messages/envelope.hpp"
 
@@ -88,6 +89,7 @@ Time Decisions::delay(const Sending& sending) {
 }
 
 bool Decisions::interrupts(PeId pe) {
+  leave_if_late();
   const std::uint64_t draw = next(mix(0x636f756eU + static_cast<std::uint64_t>(pe.value)));
   if (!Random(draw).chance(0.2 * options_.reordering) || !take(draw)) return false;
   if (options_.in_words)

@@ -19,4 +19,7 @@ namespace tess::test::detail {
 [[nodiscard]] std::string report_of(const Repeat& repeat, const Outcome& outcome,
                                     const std::string& facts, const std::string& name);
 
+/// Says on standard error if decisions of a repeat did not come up, so that it shows nothing.
+void note_absent(const Repeat& repeat, const Outcome& outcome);
+
 }  // namespace tess::test::detail

@@ -213,6 +213,20 @@ void note(std::uint64_t seed, const char* what) {
                static_cast<unsigned long long>(seed), what);
 }
 
+}  // namespace
+
+void note_absent(const Repeat& repeat, const Outcome& outcome) {
+  const DecisionIds taken = outcome.taken.value_or(DecisionIds{});
+  const auto n_absent = std::ranges::count_if(
+      *repeat.keep, [&](DecisionId id) { return !std::ranges::binary_search(taken, id); });
+  if (n_absent != 0)
+    note(repeat.seed, text("lacks ", n_absent, " of ", repeat.keep->size(),
+                           " decisions here: they are of another build, program or command line")
+                          .c_str());
+}
+
+namespace {
+
 void run_repeat(std::uint64_t first, std::uint64_t end, const Repeat& repeat,
                 const Program& program, const SeedOptions& options) {
   if (repeat.seed < first || repeat.seed >= end) {
@@ -222,6 +236,7 @@ void run_repeat(std::uint64_t first, std::uint64_t end, const Repeat& repeat,
   Trial trial{.keep = repeat.keep, .in_words = repeat.keep.has_value()};
   const std::uint64_t last = repeat.keep ? repeat.seed : repeat.seed + 1;
   const Outcome outcome = run_watched(program, options, repeat.seed, last, trial);
+  if (repeat.keep) note_absent(repeat, outcome);
   if (!outcome.failure.empty())
     throw Failure(repeat.keep ? report_of(repeat, outcome, "with these decisions:", options.name)
                               : explain(program, repeat.seed, last, outcome, options));

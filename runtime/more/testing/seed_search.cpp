@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cstdio>
 #include <functional>
 #include <optional>
@@ -78,12 +79,13 @@ int run_disturbed(const std::function<int()>& program, std::uint64_t seed) {
   return program();
 }
 
-/// The lines that count.
+/// What counts: in the lines with the word, it and what follows it.
 std::string lines_with(std::string_view text, const std::string& word) {
   std::string out;
   while (!text.empty()) {
     const std::string_view line = text.substr(0, text.find('\n'));
-    if (line.find(word) != std::string_view::npos) out.append(line).append("\n");
+    const std::size_t at = line.find(word);
+    if (at != std::string_view::npos) out.append(line.substr(at)).append("\n");
     text.remove_prefix(std::min(line.size() + 1, text.size()));
   }
   return out;
@@ -114,7 +116,9 @@ int search(const SeedRange& given, const std::function<int()>& program) {
   const std::optional<Repeat> repeat = requested_repeat();
   SeedRange seeds = given;
   if (repeat) seeds.first = seeds.last = repeat->seed;
+  const auto began = std::chrono::steady_clock::now();
   const Outcome plain = run_apart(output, seeds.first, {.keep = DecisionIds{}});
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - began;
   if (!plain.failure.starts_with(success)) {  // it says why, here
     Trial trial{.keep = DecisionIds{}};
     const InTrial in(trial);
@@ -137,23 +141,32 @@ int search(const SeedRange& given, const std::function<int()>& program) {
     return shown.starts_with(success) ? difference(expected, counted(shown))
                                       : shown.substr(0, shown.find('\n'));
   };
+  const Outcome again = run_apart(compare, seeds.first, {.keep = DecisionIds{}});
+  if (!again.failure.empty())
+    fail(ErrorCode::bad_argument,
+         "--sim seeds: a second run in the plain order differs: ", again.failure,
+         "; does the program print times, or find files that it wrote before? ",
+         "compare=WORD compares only WORD and what follows it on a line");
   if (repeat && repeat->keep) {
     Trial trial{.keep = repeat->keep, .in_words = true};
     const Outcome outcome = run_here(compare, repeat->seed, trial);
     print_text(shown.substr(shown.find('\n') + 1));
+    note_absent(*repeat, outcome);
     if (outcome.failure.empty()) return 0;
     std::fprintf(stderr, "tessera: %s\n",
                  report_of(*repeat, outcome, "with these decisions:", {}).c_str());
     return 1;
   }
+  limit_children(10 + static_cast<unsigned>(10 * took.count()));
   for (std::uint64_t seed = seeds.first; seed <= seeds.last; ++seed) {
     const Outcome outcome = run_apart(compare, seed, {});
     if (outcome.failure.empty()) continue;
-    std::fprintf(stderr, "tessera: %s%s\n",
-                 explain(compare, seed, seeds.last + 1, outcome, {}).c_str(),
-                 seeds.compare.empty()
-                     ? "\n  (times differ in any order: compare=WORD compares lines with WORD only)"
-                     : "");
+    std::fprintf(
+        stderr, "tessera: %s%s\n", explain(compare, seed, seeds.last + 1, outcome, {}).c_str(),
+        seeds.compare.empty()
+            ? "\n  (times differ in any order: compare=WORD compares only WORD and what follows "
+              "it on a line)"
+            : "");
     return 1;
   }
   print_text(expected);

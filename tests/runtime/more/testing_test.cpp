@@ -1,5 +1,6 @@
 // Planted errors are found, shrunk to the few decisions that they need, and repeated by the text
 // that is printed; correct programs pass.
+#include "runtime/more/testing/apart.hpp"
 #include "tests/runtime/more/testing/programs.hpp"
 #include "tests/support/catch.hpp"
 
@@ -260,6 +261,40 @@ TEST_CASE("a crash ends the process with the seed", "[runtime][testing]") {
   const std::string output = output_of("[crashes]");
   INFO(output);
   CHECK(output.find("repeat with: TESS_TEST_REPEAT=seed=3 ") != std::string::npos);
+}
+
+TEST_CASE("a child process that exits or does not end says which decisions it took",
+          "[runtime][testing]") {
+  using namespace test::detail;
+  enum class End { by_exit, in_no_entry_method, in_one };
+  const auto end_of = [](End end) {
+    const Program program = [end](std::uint64_t seed) -> std::string {
+      int found = 0;
+      const test::Machine machine{.pes = 4, .seed = seed, .most_events = 1'000'000'000};
+      machine
+          .run([&]() -> Task {
+            co_await write_twice<&Register::write_newest>(found);
+            if (end == End::by_exit) std::exit(7);  // NOLINT(concurrency-mt-unsafe)
+            for (volatile bool goes_on = true; goes_on;)
+              if (end == End::in_no_entry_method)
+                co_await write_twice<&Register::write_newest>(found);
+          })
+          .require_success();
+      return {};
+    };
+    return run_apart(program, 3, {});
+  };
+  const auto check = [&](End end, const std::string& failure) {
+    const Outcome outcome = end_of(end);
+    CHECK(outcome.failure == failure);
+    REQUIRE(outcome.taken);
+    CHECK(!outcome.taken->empty());
+  };
+  check(End::by_exit, "it ended the process with exit code 7");
+  limit_children(1);
+  check(End::in_no_entry_method, "it does not end; it was given 1 s");
+  check(End::in_one, "it does not end; it was given 1 s");
+  limit_children(0);
 }
 
 TEST_CASE("only the failure that was found is shrunk", "[runtime][testing]") {
