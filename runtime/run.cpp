@@ -271,6 +271,7 @@ std::string options_help() {
       "              twice\n"
       "  --stats     print the counters of each PE: messages, bytes, busy and idle seconds, "
       "chares\n"
+      "              (time that other programs took from a PE counts as idle)\n"
       "  --trace F   write what each PE ran, and which send caused it, as JSON for Perfetto or\n"
       "              chrome://tracing, and print the critical path\n"
       "  --version   print the version, the commit, the compiler and MPI\n";

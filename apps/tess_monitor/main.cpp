@@ -5,6 +5,7 @@
 //     tess_monitor --connect [::1]:8080
 #include "runtime/command_line.hpp"
 #include "runtime/core/error.hpp"
+#include "runtime/core/number.hpp"
 
 #include <boost/asio/connect.hpp>
 #include <boost/asio/io_context.hpp>
@@ -41,6 +42,9 @@ class Events {
     if (const std::size_t colon = host.rfind(':');
         colon != std::string::npos && !host.ends_with(']')) {
       port = host.substr(colon + 1);
+      if (tess::parse_number<std::uint16_t>(port).value_or(0) == 0)
+        tess::fail(tess::ErrorCode::bad_argument, "--connect ", host, ": ", port,
+                   " is no port; give HOST:PORT with one of 1 … 65535");
       host.resize(colon);
     }
     const bool six = host.starts_with('[') && host.ends_with(']');  // IPv6: [::1]
@@ -101,9 +105,13 @@ void print_frame(const json& frame, const std::vector<std::string>& lines, std::
   const auto n_pes = frame["busy"].size();
   fmt::print("{:.1f} s", frame["t"].get<double>());
   if (frame.contains("virtual")) fmt::print(" (virtual {:.6g} s)", frame["virtual"].get<double>());
-  fmt::print(", {} PEs in {} processes, {} epochs open, {} migrations\n", n_pes,
-             frame["processes"].get<int>(), frame["epochs"].get<std::uint64_t>(),
-             frame["migrations"].get<std::uint64_t>());
+  const auto some = [](std::uint64_t n, const char* one, const char* more) {
+    return fmt::format("{} {}", n, n == 1 ? one : more);
+  };
+  fmt::print(", {} in {}, {} open, {}\n", some(n_pes, "PE", "PEs"),
+             some(frame["processes"], "process", "processes"),
+             some(frame["epochs"], "epoch", "epochs"),
+             some(frame["migrations"], "migration", "migrations"));
   // With more PEs than rows a row is the mean of several.
   const std::size_t rows = std::min(n_pes, static_cast<std::size_t>(n_rows));
   fmt::print("{:>13} {:>6} {:>12} {:>9}\n", "PEs", "busy", "messages/s", "queue");

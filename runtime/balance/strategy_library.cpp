@@ -22,7 +22,7 @@ void load_strategy_library(const std::string& path) {
   const std::size_t n_before = strategy_names().size();
   try {
     register_all();
-  } catch (const Error& error) {
+  } catch (const std::exception& error) {
     refuse(error.what());
   }
   if (strategy_names().size() == n_before) refuse("registers no strategy", remedy);

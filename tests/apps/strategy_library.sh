@@ -25,13 +25,19 @@ loads=("${lab[@]}" --strategy last --strategy-library)
 exits 2 "no.so: cannot be loaded" "${loads[@]}" no.so
 exits 2 "libm.so.6: does not export" "${loads[@]}" "$(ldd "$bin/lb_lab" | awk '/libm.so/ {print $3}')"
 export TESS_TEST_STRATEGIES
-for TESS_TEST_STRATEGIES in none:"registers no strategy" version:"another version of Tessera" taken:"greedy: there is a strategy"; do
+for TESS_TEST_STRATEGIES in none:"registers no strategy" version:"another version of Tessera" taken:"greedy: there is a strategy" fails:"strategies.so: no memory of it"; do
   text=${TESS_TEST_STRATEGIES#*:}
   TESS_TEST_STRATEGIES=${TESS_TEST_STRATEGIES%%:*}
   exits 2 "$text" "${loads[@]}" "$library"
 done
 TESS_TEST_STRATEGIES=short
 exits 2 "balance strategy last: returned 7 PEs for 8 elements" "${loads[@]}" "$library"
+TESS_TEST_STRATEGIES=boom
+for run in "$bin/lb_lab --replay saved/linear-4-greedy --strategy last --strategy-library" "${loads[*]}" \
+  "$bin/task_bench --sim pes=2,cost=100ns -steps 20 --balance last --balance-every 10 --strategy-library"; do
+  # shellcheck disable=SC2086
+  exits 2 "balance strategy last: ends with an exception: boom" $run "$library"
+done
 exits 2 "no balance strategy 'last'" "${lab[@]}" --strategy last
 python3 - <<'END' && pass || fail "the JSON of lb_lab"
 import json

@@ -118,6 +118,10 @@ void complete(Settings& s, std::int32_t n_pes) {
       refuse("--per-pe: ", n, " chares on each of ", n_pes, " PEs; give 1 to ", (1 << 24) / n_pes);
   if (s.period < 1 || s.period > s.n_iterations)
     refuse("--period: ", s.period, " iterations; give 1 to --iterations ", s.n_iterations);
+  if (s.period == s.n_iterations && s.strategies.size() > 1 && s.when != "periodic")
+    refuse(
+        "--period: ", s.period, " iterations: no round would be held for ", s.strategies.back(),
+        ", since a round after the last iteration gains nothing; give fewer, or more --iterations");
   if (!s.speeds.empty() && s.speeds.size() != static_cast<std::size_t>(n_pes))
     refuse("--speed: ", s.speeds.size(), " speeds for ", n_pes, " PEs; give one per PE");
   (void)limits_of_pes(s, static_cast<std::size_t>(n_pes));

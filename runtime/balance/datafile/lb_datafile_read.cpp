@@ -152,6 +152,9 @@ class Gathering {
       s_.pes.background.assign(n_pes, 0.0);
       s_.pes.memory_limit_bytes.assign(n_pes, 0);
     }
+    if (highest_ >= s_.pes.size())
+      fail(ErrorCode::bad_file, highest_where_, " is PE ", highest_, " of ", s_.pes.size(),
+           " PEs, which pe_speed lists; write the file again");
     for (const auto& [node, bytes] : rank_working_bytes_) {
       if (bytes == 0 || node >= s_.pes.size()) continue;
       s_.pes.working_bytes.resize(s_.pes.size(), 0);
@@ -172,7 +175,7 @@ class Gathering {
     if (!is_new && time == 0) return;  // vt marks a rank without work so, equally in all files
     if (!is_new) entity.damaged("is there twice");
     auto& e = s_.elements;
-    highest_ = std::max(highest_, static_cast<std::size_t>(node));
+    note_pe(node, task["node"]);
     e.key.push_back(key_of(entity));
     e.index.push_back(entity.has("index") ? entity["index"].dump() : "");
     e.pe.push_back(pe_at(node));
@@ -208,6 +211,12 @@ class Gathering {
     ++n_positions_;
   }
 
+  void note_pe(std::uint64_t pe, const Place& from) {
+    if (pe <= highest_ && !highest_where_.empty()) return;
+    highest_ = static_cast<std::size_t>(pe);
+    highest_where_ = from.where();
+  }
+
   void read_block(const Place& user, std::uint64_t node) {
     const auto id = user["shared_id"].whole_or_none();
     if (!id) return;
@@ -217,7 +226,7 @@ class Gathering {
       if (home && *home >= most_pes)
         user["home_rank"].damaged(text("is ", *home, ", not below ", most_pes));
       s_.blocks.push_back({*id, 0, pe_at(home.value_or(node))});
-      highest_ = std::max(highest_, slot(s_.blocks.back().home));
+      note_pe(home.value_or(node), user);
     }
     auto& bytes = s_.blocks[at->second].bytes;
     bytes = std::max(bytes, user["shared_bytes"].whole_amount());
@@ -266,7 +275,8 @@ class Gathering {
   std::map<Name, std::size_t> positions_;
   std::map<std::uint64_t, std::size_t> blocks_;  // position of an id
   std::map<std::uint64_t, std::uint64_t> rank_working_bytes_;
-  std::size_t highest_ = 0;
+  std::size_t highest_ = 0;  // PE of a task or block
+  std::string highest_where_;
   std::size_t n_positions_ = 0;
   std::size_t n_left_out_ = 0;
 };
@@ -306,7 +316,12 @@ std::vector<Phase> parse_lb_datafiles(const std::vector<LbDatafile>& files) {
     for (std::size_t f = 0; f < files.size(); ++f) {
       const Place file(documents[f], files[f].name + ":");
       refuse_unwritten_phases(file);
+      for (const Place& of : {file, file.has("metadata") ? file["metadata"] : file})
+        if (of.has("type") && of["type"].word() != "LBDatafile")
+          of["type"].damaged("is not LBDatafile");
       const Place all = file["phases"];
+      if (all.size() == 0)
+        fail(ErrorCode::bad_file, all.where(), ": none is there; give a file with a phase");
       for (std::size_t k = 0; k < all.size(); ++k)
         visit(phases[all.at(k)["id"].count()], all.at(k));
     }

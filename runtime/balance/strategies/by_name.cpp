@@ -128,7 +128,14 @@ std::string obstacle(std::string_view name, const Snapshot& s) {
 
 Strategy make_strategy(Strategy users, std::string name) {
   return [users = std::move(users), name = std::move(name)](const Snapshot& s) {
-    return honour(with_unknown_pinned(s), users(s), name);
+    Assignment wanted;
+    try {
+      wanted = users(s);
+    } catch (const std::exception& error) {
+      fail(ErrorCode::bad_argument, "balance strategy ", name,
+           ": ends with an exception: ", error.what());
+    }
+    return honour(with_unknown_pinned(s), wanted, name);
   };
 }
 

@@ -131,7 +131,7 @@ std::string Board::frame(double seconds, const std::function<std::string(PeId)>&
   std::vector<int> busy, rates, queues;
   std::vector<std::uint64_t> memory;
   std::uint64_t n_epochs = 0, n_migrations = 0, n_bytes = 0;
-  double latest = 0;
+  double latest = 0, n_measured = 0;
   std::string late;
   const bool passes_on = n_processes_ > 1 && pes_.front().is_new;
   for (OfPe& of : pes_) {
@@ -161,6 +161,7 @@ std::string Board::frame(double seconds, const std::function<std::string(PeId)>&
       }
     }
     of.is_new = false;
+    n_measured += now.measured || !of.runs.empty() ? 1 : 0;
     busy.push_back(of.percent);
     rates.push_back(static_cast<int>(of.rate));
     queues.push_back(static_cast<int>(std::min<std::uint64_t>(now.n_ready, 2'000'000'000)));
@@ -180,6 +181,7 @@ std::string Board::frame(double seconds, const std::function<std::string(PeId)>&
   out += fmt::format(R"("busy":[{}],"rate":[{}],"queue":[{}],"memory":[{}],"late":[{}],)",
                      fmt::join(busy, ","), fmt::join(rates, ","), fmt::join(queues, ","),
                      fmt::join(memory, ","), late);
+  out += fmt::format(R"("measured":{:.4g},)", n_measured / n_pes_);  // part of the PEs' time
   return out + "\"entries\":[" + entries() + "],\"collections\":[" + collections() + "]}";
 }
 

@@ -140,9 +140,8 @@ class Monitor::Loop {
   void end_heat_window(Pe& pe) {
     if (auto& heat = of_pe(pe.id()).heat) report_heat(pe, heat->end_window());
   }
-  [[nodiscard]] std::vector<EntrySample> take_entries(PeId pe) {
-    const auto& heat = of_pe(pe).heat;
-    return heat ? heat->take_entries() : std::vector<EntrySample>();
+  void give_entries(PeSample& sample) {
+    if (const auto& heat = of_pe(sample.pe).heat) heat->give_entries(sample);
   }
   [[nodiscard]] bool wants_part(const Pe& pe, std::string_view name, std::uint64_t part) {
     return of_pe(pe.id()).parts.wants(name, part);
@@ -301,7 +300,7 @@ void sample_is_asked(Pe& pe, SampleAsked&& asked) {
   if (pe.id().value == 0) loop.ask_others(pe, asked);
   loop.begin_period(pe, asked);
   PeSample sample = sample_of(pe);
-  sample.entries = loop.take_entries(pe.id());
+  loop.give_entries(sample);
   to_process_0<&sample_arrives>(pe, std::move(sample));
 }
 void sample_arrives(Pe& pe, PeSample&& sample) {

@@ -15,6 +15,7 @@ constexpr std::size_t most_counted = 65536;  // elements of a process in a perio
 constexpr std::size_t least_counted = 64;    // of a PE
 constexpr std::size_t counted_first = 1024;  // of a PE, until its first pass is over
 constexpr double long_seconds = 20e-6;       // a stretch of code so long may have been interrupted
+constexpr double cpu_again_seconds = 1e-4;   // the thread's clock costs up to microseconds
 
 }  // namespace
 
@@ -50,6 +51,7 @@ void PeHeat::begin_window() {
   open_ = listens_ = true;
   spent_.clear();
   running_ = {};
+  cpu_at_ = 0;
   const auto n_pes_here = static_cast<std::size_t>(pe_.machine().n_pes_here());
   most_scopes_ = pe_.machine().virtual_time() ? std::max(least_scopes, 8 * most_scopes / n_pes_here)
                                               : most_scopes;
@@ -77,8 +79,12 @@ void PeHeat::changed(std::uint64_t at) {
   const Element* element = pe_.context().element;
   if (element == nullptr) return;
   running_.action = pe_.context().action;
-  if (!pe_.machine().virtual_time()) cpu_since_ = thread_cpu_seconds();
   since_ = pe_.meter()->now();
+  if (!pe_.machine().virtual_time() &&
+      (cpu_at_ == 0 || pe_.meter()->seconds(since_ - cpu_at_) > cpu_again_seconds)) {
+    cpu_seen_ = thread_cpu_seconds();
+    cpu_at_ = since_ = pe_.meter()->now();
+  }
   for (auto& [query, map] : maps_) {
     if (query.map.by != HeatBy::load) continue;
     const HostedCollection* collection = pe_.collections().find(query.map.array);
@@ -96,7 +102,9 @@ void PeHeat::add(std::uint64_t ticks) {
     ticks += static_cast<std::uint64_t>(pe_.machine().message_cost().count());
   } else if (const Meter& meter = *pe_.meter(); meter.seconds(ticks) > long_seconds) {
     // Another thread may have had the core.
-    ticks = std::min(ticks, meter.ticks(thread_cpu_seconds() - cpu_since_));
+    const std::uint64_t before = since_ - cpu_at_,
+                        ran = meter.ticks(thread_cpu_seconds() - cpu_seen_);
+    ticks = std::min(ticks, ran - std::min(ran, before));
   }
   const auto key = [](const Spent& of) { return std::tuple(of.map, of.cell, of.action); };
   if (spent_.empty() || key(spent_.back()) != key(running_)) spent_.push_back(running_);
@@ -135,6 +143,7 @@ std::vector<HeatCells> PeHeat::close_window() {
     }
   }
   entries_.clear();
+  measured_ = true;
   for (const Spent& one : spent_) {
     const auto at = std::find_if(entries_.begin(), entries_.end(),
                                  [&](const auto& entry) { return entry.first == one.action; });
@@ -145,11 +154,10 @@ std::vector<HeatCells> PeHeat::close_window() {
   return out;
 }
 
-std::vector<EntrySample> PeHeat::take_entries() {
-  std::vector<EntrySample> out;
+void PeHeat::give_entries(PeSample& sample) {
+  sample.measured = std::exchange(measured_, false);
   for (const auto& [action, part] : std::exchange(entries_, {}))
-    out.push_back({plain_name(action->name()), part});
-  return out;
+    sample.entries.push_back({plain_name(action->name()), part});
 }
 
 bool PeHeat::count(const HeatQuery& query, Map& map) {

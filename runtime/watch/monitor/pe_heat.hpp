@@ -41,8 +41,8 @@ class PeHeat final : public ScopeListener {
   /// Returns what is known of the last one.
   [[nodiscard]] std::vector<HeatCells> begin(const std::vector<HeatQuery>& queries,
                                              bool entries_too);
-  /// The entry methods that ran in the last window; empty if they have been taken.
-  [[nodiscard]] std::vector<EntrySample> take_entries();
+  /// Puts the entry methods that ran in the last window into a sample, unless they have been taken.
+  void give_entries(PeSample& sample);
   /// The window is over: returns what it measured, unless it stays open.
   [[nodiscard]] std::vector<HeatCells> end_window();
 
@@ -82,13 +82,14 @@ class PeHeat final : public ScopeListener {
   bool open_ = false;                    // of the window; the meter runs
   bool listens_ = false;                 // to the meter: until the window has seen enough scopes
   std::uint64_t began_ = 0, ended_ = 0;  // ticks; of the window
-  // The running scope: when it began, or went on, in ticks and in the thread's time; its entry
-  // method and cell.
-  std::uint64_t since_ = 0;
-  double cpu_since_ = 0;
+  // The running scope: when it began, or went on; its entry method and cell. The thread's time was
+  // last asked for at `cpu_at_`, at most cpu_again_seconds before.
+  std::uint64_t since_ = 0, cpu_at_ = 0;
+  double cpu_seen_ = 0;
   Spent running_;
   std::vector<Spent> spent_;
   std::vector<std::pair<const Action*, double>> entries_;  // parts of the last window's time
+  bool measured_ = false;                                  // the entries have not been taken
   std::size_t most_scopes_ = 0;
 };
 

@@ -33,6 +33,7 @@ struct PeSample {
   PeLoad load;                      ///< that of elements only with --stats
   std::vector<CollectionSample> collections;
   std::vector<EntrySample> entries;  ///< that ran; only while a browser watches
+  bool measured = false;             ///< `entries` are what a window has seen
 };
 
 /// The present sample of a PE, on its thread.

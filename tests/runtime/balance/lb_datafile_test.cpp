@@ -328,6 +328,11 @@ TEST_CASE("a damaged file is refused in one line with file, place and remedy",
   CHECK_THAT(broken("/phases/0/tasks/1/time", "long"), Catch::Contains("time is not a number"));
   CHECK_THAT(broken("/phases/0/tasks/1/node", -4), Catch::Contains("node is not a whole number"));
   CHECK_THAT(broken("/phases/0/tasks/1/node", 4000000000), Catch::Contains("node is 4000000000"));
+  CHECK_THAT(broken("/phases/0/tasks/1/node", 99),
+             Catch::Contains("data.0.json: phases 0 tasks 1 node is PE 99 of 2 PEs"));
+  CHECK_THAT(broken("/phases", json::array()), Catch::Contains("data.0.json: phases: none"));
+  for (const char* place : {"/type", "/metadata/type"})
+    CHECK_THAT(broken(place, "LBStats"), Catch::Contains(" type is not LBDatafile"));
   CHECK_THAT(broken("/phases/0/tasks/1/entity", json::object()), Catch::Contains("lacks 'type'"));
   CHECK_THAT(broken("/phases/0/tasks/1", good["phases"][0]["tasks"][0]),
              Catch::Contains("tasks 1 entity is there twice"));

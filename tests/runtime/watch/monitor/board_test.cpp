@@ -98,11 +98,13 @@ TEST_CASE("a frame has the greatest parts of entry methods in the time of all PE
   for (const int pe : {0, 1}) {
     PeSample one = sample(pe, 1000, 0, 1);
     one.entries = {{"Cell::a", 0.3}, {"Cell::\"b\"", 0.5 * pe}};
+    one.measured = true;
     board.arrived(one);
   }
   json frame = last_frame(board, 2);
   CHECK(frame["entries"] ==
         json::array({json::array({"Cell::a", 0.15}), json::array({"Cell::\"b\"", 0.125})}));
+  CHECK(frame["measured"] == 0.5);
   // A PE that has not answered since is in one entry method.
   for (const Event& event :
        board.take_events(3, [](tess::PeId pe) { return pe.value == 0 ? "Cell::c" : ""; }))

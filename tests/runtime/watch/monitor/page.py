@@ -138,6 +138,7 @@ def check_page(page):
 
     for place in ('rate', 'queue', 'imbalance', 'memory'):
         labels = page.value(f"[...$('{place}').querySelectorAll('text')].map(label => label.textContent)")
+        check(f'labels of {place} differ', len(set(labels)) == len(labels), labels)
         check(f'axes of {place}', sum(label.endswith(' s') for label in labels) >= 2 and sum(not label.endswith(' s') for label in labels) >= 2, labels)
         check(f'a curve of {place}', page.value(f"$('{place}').querySelector('polyline').points.length") > 5)
     imbalance = re.search(r'at most (\d\.\d\d)$', text('imbalance'))
@@ -185,6 +186,12 @@ def check_page(page):
     def idle():
         return page.value("Math.max(...$('busy').getContext('2d').getImageData(0, 0, 1, 1).data.slice(0, 3))")
 
+    page.value("frames.forEach((f, i) => { f.t = i / 2; f.busy = [50, 50]; f.measured = i % 2; f.entries = i % 2 ? [['f', 0.5]] : []; }); soon()")
+    time.sleep(0.3)
+    wait('it is drawn', '!drawn')
+    check('only the time that was measured counts', text('entries') == 'f15.0 k ms50.0 %' and 'of the 30.0 s that' in text('entrieskey') and '; processor time' in text('entrieskey'), text('entries') + text('entrieskey'))
+    labels = page.value("[...$('imbalance').querySelectorAll('text')].map(label => label.textContent).filter(label => !label.endsWith(' s'))")
+    check('labels of a flat curve differ', len(set(labels)) == len(labels) >= 2, labels)
     page.value("frames[0].busy = [0, 0]; soon()")
     for width, dark in ((1000, False), (1000, True), (390, False), (320, True)):
         page.screen(width, 844, dark)

@@ -45,6 +45,7 @@ fi
 
 begin "$stencil" --pes 2 --monitor 0 "${problem[@]}"
 sees 'stencil::Block *64 *32 *32' --frames 40
+sees ' s, 2 PEs in 1 process, [0-9]* epochs* open, 0 migrations' --frames 4
 sees 'PEs wait [0-9.]* % of the time' --frames 4
 sleep 3
 second=$(timeout 20 "$monitor" --connect "$at" --frames 1 | sed -n '1s/^\([0-9]*\)[.].*/\1/p')
@@ -52,6 +53,7 @@ if ((${second:-0} >= 2)); then pass; else fail "a frame of the past: second ${se
 sees 'Block by load: hottest \[[0-7],[0-7]\]: ' --heat Block
 sees 'Block by pe: 64 elements on 2 of 2 PEs, at most 32' --heat Block --by pe
 sees 'no array is named Blok yet' --heat Blok
+exits 2 'localhost:83616: 83616 is no port; give HOST:PORT' "$monitor" --connect localhost:83616
 exits 2 '\-\-by' "$monitor" --connect "$at" --heat Block --by size
 end
 exits 2 'is the run started with --monitor' "$monitor" --connect "$at"
