@@ -5,6 +5,7 @@
 #include "runtime/pe/pe_action.hpp"
 #include "runtime/pe/report/pe_watch.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <cstdlib>
 #include <pthread.h>
@@ -13,8 +14,8 @@ namespace tess {
 namespace detail {
 namespace {
 
-/// The lowest address of this thread's stack to which calls may go, and 256 KiB above its end: the
-/// room for what a task calls. 0 if the system does not say.
+/// The lowest address of this thread's stack to which calls may go, and 256 KiB above its end, or a
+/// quarter of a small stack: the room for what a task calls. 0 if the system does not say.
 std::uintptr_t lowest_call() {
   constexpr std::size_t room_bytes = std::size_t{256} << 10U;
   pthread_attr_t attributes;
@@ -23,7 +24,7 @@ std::uintptr_t lowest_call() {
   if (pthread_getattr_np(pthread_self(), &attributes) != 0) return 0;
   const bool known = pthread_attr_getstack(&attributes, &end, &n_bytes) == 0;
   pthread_attr_destroy(&attributes);
-  return known ? reinterpret_cast<std::uintptr_t>(end) + room_bytes : 0;
+  return known ? reinterpret_cast<std::uintptr_t>(end) + std::min(room_bytes, n_bytes / 4) : 0;
 }
 
 /// A coroutine handle in the queue of its own PE, which it never leaves.

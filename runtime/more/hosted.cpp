@@ -2,8 +2,11 @@
 
 #include "runtime/wire/machine/threads.hpp"
 
+#include <atomic>
 #include <exception>
+#include <future>
 #include <mutex>
+#include <unistd.h>
 
 namespace tess {
 namespace {
@@ -17,6 +20,28 @@ Task run_to_end(const std::function<Task()>& main, std::exception_ptr& error, bo
   is_done = true;
 }
 
+/// The process whose run is under way, or 0. A forked process inherits it without the thread of the
+/// run, which a mutex would make it wait for.
+std::atomic<pid_t> runs_in{0};
+
+/// Waits until no run is under way in this process.
+struct Turn {
+  Turn() {
+    const pid_t here = getpid();
+    for (pid_t seen = 0; !runs_in.compare_exchange_strong(seen, here); seen = 0) {
+      if (seen != here)
+        fail(ErrorCode::environment, "process ", here, " was forked from process ", seen,
+             " while a run was under way there, so it cannot run: start processes by "
+             "multiprocessing's \"spawn\" or \"forkserver\", or fork when nothing runs");
+      runs_in.wait(seen);
+    }
+  }
+  ~Turn() {
+    runs_in = 0;
+    runs_in.notify_one();
+  }
+};
+
 }  // namespace
 
 void run_hosted(std::int32_t n_pes, const std::function<Task()>& main) {
@@ -24,8 +49,7 @@ void run_hosted(std::int32_t n_pes, const std::function<Task()>& main) {
   if (n_pes < 1 || n_pes > most_pes)
     fail(ErrorCode::bad_argument, "pes: ", n_pes, " is not a number of threads from 1 to ",
          most_pes);
-  static std::mutex one_run;
-  const std::lock_guard turn(one_run);
+  const Turn turn;
   Setup setup{make_threads_machine(n_pes, detail::Pinning::none), {}};
   setup.options.signals = false;
   std::mutex of_report;
@@ -36,7 +60,9 @@ void run_hosted(std::int32_t n_pes, const std::function<Task()>& main) {
   };
   std::exception_ptr error;
   bool is_done = false;
-  const int code = run(setup, [&]() -> Task { return run_to_end(main, error, is_done); });
+  const auto task = [&]() -> Task { return run_to_end(main, error, is_done); };
+  // The stack of the host's thread may be too small for a PE.
+  const int code = std::async(std::launch::async, [&] { return run(setup, task); }).get();
   if (error) std::rethrow_exception(error);
   if (code != 0 || !is_done)
     fail(ErrorCode::environment, "the run ended before its task, with exit code ", code, report);

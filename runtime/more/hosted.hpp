@@ -15,7 +15,8 @@ namespace tess {
 
 /// Runs `main` on PE 0 of `n_pes`. Rethrows what ends it. Throws Error (bad_argument) unless there
 /// are 1 to 4096 PEs, (environment) with the lines of the runtime's report if the run ends before
-/// the task. May not be called inside a run.
+/// the task, or if this process was forked while a run was under way. May not be called inside a
+/// run.
 void run_hosted(std::int32_t n_pes, const std::function<Task()>& main);
 
 }  // namespace tess

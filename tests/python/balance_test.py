@@ -95,6 +95,7 @@ class Balance(unittest.TestCase):
                 (lambda: balance.assign(s, lambda x: x.loads), "its dtype is float64"),
                 (lambda: balance.assign(balance.snapshot([1], [0], 1), "rcb"), "positions of all elements"),
                 (lambda: balance.evaluate(s, s.owners - 1), "is -1"),
+                (lambda: balance.compare(s, [lambda x: x.owners, lambda x: x.owners]), "two are named <lambda>"),
                 (lambda: balance.snapshot([1, -2], [0, 0], 1), r"loads\[1\] is -2"),
                 (lambda: balance.snapshot([1], [1], 1), r"owners\[0\] is 1, and there are 1 PEs"),
                 (lambda: balance.snapshot([1], [0], 0), "n_pes: 0"),

@@ -94,6 +94,8 @@ class Queries(unittest.TestCase):
                 (lambda: points.nearest([[0, 0, 0]], 0), "k: 0 is not a number"),
                 (lambda: points.nearest([[0, np.inf, 0]]), r"points\[0, 1\] is inf"),
                 (lambda: points.within([[0, 0, 0]], -1), "radius of -1"),
+                (lambda: points.within([[0, 0, 0]], np.ma.masked_array([1.0], [True])), "radius: it is a masked array"),
+                (lambda: collide.Index([[1e160, 0, 0]]), r"objects\[0, 0\] is 1e\+160; give .* at most 1e\+150"),
                 (lambda: collide.Index(boxes(3)).ray([[0, 0, 0]], [[0, 0, 0]]), "direction not zero"),
                 (lambda: collide.Index(boxes(3)).ray([[0, 0, 0]], np.eye(3)), r"directions: its shape is \(3, 3\); expected \(1, 3\), one per origin")):
             with self.assertRaisesRegex(tessera.Error, words):
@@ -122,6 +124,10 @@ class Distances(unittest.TestCase):
         np.testing.assert_allclose(distance, radius - 1, atol=0.012)
         self.assertGreater(np.einsum("ij,ij->i", normal, queries / radius[:, None]).min(), 0.99)
         self.assertEqual(field.shape, (48, 48, 48))
+        at = np.array([1e9, 0, -1e7])
+        away = sdf.build(points + at, triangles, 48, margin=0.3)
+        np.testing.assert_allclose(away.sample(queries + at)[0], distance, atol=1e-5)
+        np.testing.assert_allclose((away.low, away.high), (at + field.low, at + field.high))
         np.testing.assert_allclose(np.subtract(field.high, field.low), 47 * field.cell)
         far, none = field.sample([[9, 9, 9]])
         self.assertTrue(np.isinf(far[0]) and not none.any())
@@ -143,7 +149,17 @@ class Distances(unittest.TestCase):
 
     def test_errors(self):
         points, triangles = sphere(6)
+        flipped = triangles.copy()
+        flipped[[20, 50]] = flipped[[20, 50], ::-1]
+        for turned in (triangles[:, ::-1], np.concatenate([triangles, triangles[20:21]])):
+            self.assertLess(sdf.build(points.round(12), turned, 16).sample([[0, 0, 0]])[0][0], -0.7)
+        self.assertGreater(sdf.build(points, flipped, 16, two_sided=True).sample([[0, 0, 0]])[0][0], 0.7)
         for call, words in (
+                (lambda: sdf.build(points, flipped), r"triangles (\d+ and (20|50)|(20|50) and \d+) pass"),
+                (lambda: sdf.build(points[flipped].reshape(-1, 3), np.arange(flipped.size).reshape(-1, 3)), "pass their edge in the same direction"),
+                (lambda: sdf.build(points * 1e40, triangles), r"points: the surface has a size of 3.4.*e\+40, .*scale"),
+                (lambda: sdf.build(points * 1e-40, triangles), r"cells of .*e-4\d; .*scale"),
+                (lambda: sdf.build(points, triangles, margin=-5), "margin -5"),
                 (lambda: sdf.build(points, triangles + 1), "triangles.* is 84, and there are 84 points"),
                 (lambda: sdf.build(points, triangles[:0]), "."),
                 (lambda: sdf.build(points, triangles, 2), "."),

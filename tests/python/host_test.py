@@ -37,6 +37,7 @@ class Errors(unittest.TestCase):
                 ({"values": np.zeros((4913, 0))}, "values: its shape is"),
                 ({"values": FIELD * 1j}, "values: its dtype is complex128; expected real numbers"),
                 ({"values": None}, "values"),
+                ({"values": np.ma.masked_less(FIELD, 1)}, "values: it is a masked array"),
                 ({"source_points": POINTS[:, :2]}, r"source_points: its shape is \(4913, 2\); expected \(n, 3\)"),
                 ({"source_points": POINTS * 1e200}, r"source_points\[.*\] is .*; give finite numbers of at most"),
                 ({"source_tets": bad_tets}, r"source_tets\[7, 2\] is -1, and there are 4913 points"),
@@ -116,6 +117,14 @@ class Threads(unittest.TestCase):
         for values in results.values():
             np.testing.assert_array_equal(values, expected)
 
+    def test_a_thread_with_a_small_stack_can_call(self):
+        before, values = threading.stack_size(128 << 10), []
+        thread = threading.Thread(target=lambda: values.append(call().values))
+        thread.start()
+        thread.join()
+        threading.stack_size(before)
+        np.testing.assert_allclose(values, [TARGET[:9] @ [1, 2, 3]])
+
     def test_many_calls_leave_no_threads_and_no_affinity(self):
         cores, n = os.sched_getaffinity(0), len(os.listdir("/proc/self/task"))
         for _ in range(20):
@@ -178,6 +187,30 @@ class Host(unittest.TestCase):
         if pid == 0:
             os._exit(0 if abs(call().values - TARGET[:9] @ [1, 2, 3]).max() < 1e-12 else 1)
         self.assertEqual(os.waitpid(pid, 0)[1], 0)
+
+    def test_a_child_forked_during_a_call_of_another_thread_refuses(self):
+        done = self.run_python(
+            "import os, signal, threading, tessera\n"
+            "mesh = tessera.read_mesh('kuhn:8@0.2')\n"
+            "move = lambda: tessera.transfer(mesh.points, mesh.tets, mesh.points[:, 0], mesh.points)\n"
+            "def work():\n"
+            "  while not stop: move()\n"
+            "def fork():\n"
+            "  pid = os.fork()\n"
+            "  if pid: return os.waitpid(pid, 0)[1]\n"
+            "  signal.alarm(30)  # ends a child that waits for ever\n"
+            "  try: move()\n"
+            "  except tessera.Error as error: os._exit(1 if 'spawn' in str(error) else 2)\n"
+            "  os._exit(0)\n"
+            "stop = []\n"
+            "thread = threading.Thread(target=work)\n"
+            "thread.start()\n"
+            "ends = set()\n"
+            "while 1 not in ends and len(ends) < 3: ends.add(os.waitstatus_to_exitcode(fork()))\n"
+            "stop.append(1)\n"
+            "thread.join()\n"
+            "print(ends <= {0, 1}, fork())\n")
+        self.assertEqual((done.stdout, done.stderr, done.returncode), ("True 0\n", "", 0))
 
 
 class Types(unittest.TestCase):

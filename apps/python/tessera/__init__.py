@@ -88,7 +88,9 @@ class Coupling:
     kinds. tolerance: how far outside a point may be to snap to a cell. order: of moving least squares,
     1 or 2. clamp: keeps values within those of the donor. pes: the number of threads.
 
-    status: (k,) uint8 of Status. distance: (k,) to the source, 0 inside; None for conservative kinds.
+    status: (k,) uint8 of Status. distance: (k,), 0 in a cell; of SNAPPED points, as in kind projection, to
+    the nearest cell; of OUTSIDE ones to the nearest source point, though the mesh may be nearer, and so of all
+    in clouds and moving-least-squares; None for conservative kinds.
     notes: counts of target points that are worth a look, such as {"lower_order": 12}.
 
     Kinds linear, second-order, nearest and projection keep the matrix of their weights. The others, and

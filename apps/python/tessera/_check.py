@@ -11,6 +11,8 @@ from ._tessera import Error
 
 def array(given: Any, name: str, kinds: str, needed: str) -> np.ndarray:
     """kinds: of dtypes, such as "iu". In C order."""
+    if isinstance(given, np.ma.MaskedArray):
+        raise Error(f"{name}: it is a masked array, and a mask would be lost; give .filled(value), or the rows that count")
     try:
         out = np.asarray(given, order="C")
     except ValueError as error:

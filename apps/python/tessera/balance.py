@@ -136,9 +136,11 @@ class Comparison:
 
 
 def compare(snapshot: Snapshot, strategies: Sequence[Strategy], seed: int = 1) -> Comparison:
-    """Runs strategies, names or functions, on one snapshot."""
+    """Runs strategies, names or functions with a name each, on one snapshot."""
     rows = {"before": evaluate(snapshot)}
     for strategy in strategies:
         name = strategy if isinstance(strategy, str) else getattr(strategy, "__name__", "own") + "()"
+        if name in rows:
+            raise Error(f"strategies: two are named {name}, and a row has one; give functions names of their own, by def or __name__")
         rows[name] = evaluate(snapshot, assign(snapshot, strategy, seed))
     return Comparison(rows)

@@ -45,10 +45,11 @@ def triangle_pairs(points: ArrayLike, triangles: ArrayLike, *, touching: bool = 
 
 class Index:
     """A tree over objects, which are copied. Queries come in batches and may run in several threads.
-    Objects are named by their positions."""
+    Objects are named by their positions. Coordinates are at most 1e150."""
 
     def __init__(self, objects: ArrayLike) -> None:
-        self._index = _tessera.Index(_objects(objects, "objects"))
+        given = _objects(objects, "objects")
+        self._index = _tessera.Index(_check.doubles(given, "objects", given.shape, "", 1e150))
 
     def __len__(self) -> int:
         return len(self._index)
@@ -56,20 +57,21 @@ class Index:
     def within(self, points: ArrayLike, radius: ArrayLike) -> tuple[NDArray[np.int64], NDArray[np.uint32]]:
         """What lies within a distance of points (m, 3). radius: a number, or (m,). Returns begin (m + 1,)
         and objects: those of point i are objects[begin[i]:begin[i + 1]], ascending."""
-        given, radii = _check.points(points, "points"), np.asarray(radius)
+        given, radii = _check.points(points, "points"), _check.array(radius, "radius", "fiu", "real numbers")
         radii = np.full(len(given), radii) if radii.ndim == 0 else radii
         return self._index.within(given, _check.doubles(radii, "radius", (len(given),), "a number, or one per point"))
 
     def nearest(self, points: ArrayLike, k: int = 1) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
         """The k nearest objects of points (m, 3), near ones first, and their distances: two arrays
-        (m, min(k, len(self)))."""
+        (m, min(k, len(self))). Distances below 1e-150 count as 0."""
         if k < 1:
             raise Error(f"k: {k} is not a number of objects; give 1 or more")
         return self._index.nearest(_check.points(points, "points"), k)
 
     def ray(self, origins: ArrayLike, directions: ArrayLike) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
         """The first object that each ray (m, 3), (m, 3) meets, and t of origin + t direction, t >= 0:
-        two arrays (m,), with -1 and inf where a ray meets none. Not for points and segments."""
+        two arrays (m,), with -1 and inf where a ray meets none, as a triangle in whose plane it lies. Not for
+        points and segments."""
         starts = _check.points(origins, "origins")
         ways = _check.doubles(directions, "directions", starts.shape, f"{starts.shape}, one per origin")
         return self._index.ray(starts, ways)

@@ -32,13 +32,14 @@ class Field:
 
 def build(points: ArrayLike, triangles: ArrayLike, n: int = 64, *, margin: float | None = None,
           thickness: float = np.inf, two_sided: bool = False) -> Field:
-    """The field of a surface on n³ voxels, 4 <= n <= 1024. points: (p, 3). triangles: (m, 3) int, in any
-    orientation. margin: free space around the surface; None is a tenth of its longest side. thickness:
-    distances are cut off there, which saves time. two_sided: an open surface, with distances >= 0."""
+    """The field of a surface on n³ voxels, 4 <= n <= 1024. points: (p, 3). triangles: (m, 3) int,
+    counter-clockwise seen from outside, or all clockwise of a closed surface; neighbours that disagree are an
+    Error. margin: free space around it; None is a tenth of its longest side. thickness: distances are cut off
+    there, which saves time. two_sided: an open surface, with distances >= 0."""
     corners = _check.points(points, "points")
     layout = "(m, 3), the points of each triangle"
     numbers = _check.indices(triangles, "triangles", (-1, 3), layout, len(corners), "points", np.uint32)
-    return Field(_tessera.Field(corners, numbers, n, -1.0 if margin is None else margin, thickness, two_sided))
+    return Field(_tessera.Field(corners, numbers, n, margin, thickness, two_sided))
 
 
 def read_surface(path: str | os.PathLike[str]) -> tuple[NDArray[np.float64], NDArray[np.uint32]]:
