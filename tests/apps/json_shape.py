@@ -44,7 +44,7 @@ m2m_transfer kuhn:3 kuhn:4 --study steps
 m2m_transfer kuhn:3 kuhn:4 --study pes
 m2m_transfer kuhn:3 kuhn:4 --round-trips 1,2
 m2m_transfer --stability
-lb_lab --workload uniform --per-pe 2 --strategy none,greedy --iterations 10 --grain 20us --sim pes=2
+lb_lab --workload uniform --per-pe 2 --strategy none,greedy --iterations 20 --grain 20us --sim pes=2
 task_bench -steps 4 -width 4 -type stencil_1d -kernel compute_bound -iter 16
 task_bench -metg -steps 4 -width 4 -type stencil_1d
 bench --quick message

@@ -95,10 +95,26 @@ const std::vector<std::string>& strategy_names() {
   return names();
 }
 
+namespace {
+
+/// The user's strategy of an entry, whose exceptions name it.
+Strategy named_when_it_throws(const Entry& entry) {
+  return [users = entry.users, name = entry.name](const Snapshot& s) {
+    try {
+      return users(s);
+    } catch (const std::exception& error) {
+      fail(ErrorCode::bad_argument, "balance strategy ", name,
+           ": ends with an exception: ", error.what());
+    }
+  };
+}
+
+}  // namespace
+
 Strategy make_strategy(std::string_view name, std::uint64_t seed) {
   for (const Entry& entry : entries()) {
     if (entry.name != name) continue;
-    if (entry.users) return make_strategy(entry.users, entry.name);
+    if (entry.users) return make_strategy(named_when_it_throws(entry), entry.name);
     return [run = entry.run, seed](const Snapshot& s) {
       if (n_known_loads(s) == s.elements.size()) return run(s, seed);
       return run(with_unknown_pinned(s), seed);
@@ -128,14 +144,7 @@ std::string obstacle(std::string_view name, const Snapshot& s) {
 
 Strategy make_strategy(Strategy users, std::string name) {
   return [users = std::move(users), name = std::move(name)](const Snapshot& s) {
-    Assignment wanted;
-    try {
-      wanted = users(s);
-    } catch (const std::exception& error) {
-      fail(ErrorCode::bad_argument, "balance strategy ", name,
-           ": ends with an exception: ", error.what());
-    }
-    return honour(with_unknown_pinned(s), wanted, name);
+    return honour(with_unknown_pinned(s), users(s), name);
   };
 }
 

@@ -78,10 +78,8 @@ TEST_CASE("an assignment that is none ends the run with an error that says why",
       {[](const Snapshot& s) {
          return Assignment(s.elements.size(), PeId{balance::Load::unknown().seconds() > 0 ? 1 : 0});
        },
-       "array Phased: balance strategy own: ends with an exception: balance strategy: takes an "
-       "unknown load for a number"},
-      {[](const Snapshot& /*s*/) -> Assignment { throw std::runtime_error("no idea"); },
-       "balance strategy own: ends with an exception: no idea"},
+       "array Phased: balance strategy: takes an unknown load for a number"},
+      {[](const Snapshot& /*s*/) -> Assignment { throw std::runtime_error("no idea"); }, "no idea"},
       {balance::Strategy(), "the strategy is an empty function"},
   };
   for (const auto& [strategy, sentence] : wrong) {
