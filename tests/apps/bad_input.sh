@@ -309,7 +309,6 @@ refuses "11 blocks" "$bin/lb_lab" --sim pes=1 --json "$scratch/result.json" --wo
 refuses --grain "${lab[@]}" --grain 1
 refuses --period "${lab[@]}" --period 6 --iterations 5
 refuses "--period: 10 iterations: no round would be held for greedy" "${lab[@]}" --strategy greedy --iterations 10
-refuses "--save-snapshot: .*missing/x cannot be made a folder" "${lab[@]}" --save-snapshot "$scratch/missing/x"
 refuses --when "${lab[@]}" --when sometimes
 refuses moving_average "${lab[@]}" --prediction nonsense
 refuses --speed "${lab[@]}" --speed 1,1,0.5

@@ -71,7 +71,7 @@ void write_file(const std::string& path, std::string_view content) {
 void make_folder(const std::string& option, const fs::path& path) {
   if (path.empty()) return;
   std::error_code error;
-  fs::create_directory(path, error);
+  fs::create_directories(path, error);
   const std::string why = error ? error.message() : denial(path, W_OK | X_OK);
   if (!why.empty())
     tess::fail(tess::ErrorCode::environment, option, ": ", path.string(),

@@ -24,7 +24,7 @@ void require_picture(const std::string& option, const std::string& path);
 /// Throws tess::Error (environment) that names the path and why it cannot be written.
 void write_file(const std::string& path, std::string_view content);
 
-/// Makes a folder to write to, in one that is there. Throws tess::Error (environment) that names the
+/// Makes a folder to write to, and those above it. Throws tess::Error (environment) that names the
 /// option, the path and the reason. An empty path makes no folder.
 void make_folder(const std::string& option, const std::filesystem::path& path);
 
