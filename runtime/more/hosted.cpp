@@ -36,6 +36,8 @@ struct Turn {
       runs_in.wait(seen);
     }
   }
+  Turn(const Turn&) = delete;
+  Turn& operator=(const Turn&) = delete;
   ~Turn() {
     runs_in = 0;
     runs_in.notify_one();
