@@ -1,5 +1,7 @@
 #include "runtime/more/hosted.hpp"
 
+#include "runtime/core/check.hpp"
+#include "runtime/pe/pe.hpp"
 #include "runtime/wire/machine/threads.hpp"
 
 #include <atomic>
@@ -51,6 +53,8 @@ void run_hosted(std::int32_t n_pes, const std::function<Task()>& main) {
   if (n_pes < 1 || n_pes > most_pes)
     fail(ErrorCode::bad_argument, "pes: ", n_pes, " is not a number of threads from 1 to ",
          most_pes);
+  // Here, since run() is on another thread; and before the turn, which a run would wait for for ever.
+  TESS_CHECK(detail::current_pe_or_null() == nullptr, "run_hosted() is called inside a run");
   const Turn turn;
   Setup setup{make_threads_machine(n_pes, detail::Pinning::none), {}};
   setup.options.signals = false;
